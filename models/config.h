@@ -1,0 +1,60 @@
+// The defaults of the library, in one place. `PlannerSettings` and `WorldCapacity` size memory at
+// setup; `PlanOptions` travel with each request. Units are in the names; numbers that come from a
+// measurement name it in docs/RESULTS.md.
+#pragma once
+
+#include <cstdint>
+
+#include "models/capacity.h"
+
+namespace sopt {
+
+enum class SamplerMode : std::int8_t {
+  kRrtStar,         // one tree from the start [Leu22, III-A]
+  kRrtStarConnect,  // a tree from each end; Deviation: no heavy tail in the time to a path
+};
+
+struct WorldCapacity {
+  int max_obstacles = 8192;
+  int max_vertices = 65536;  // of all obstacles together, each rounded up to a multiple of 4
+};
+
+// Sizes the planner's memory; fixed for its life.
+struct PlannerSettings {
+  int max_horizon = 4096;        // steps of a trajectory, >= 2
+  int num_streams = 4;           // sampler streams, 1..kMaxStreams
+  int nodes_per_stream = 20000;  // both trees of a stream together, >= 4
+  int max_path_vertices = 1024;  // of a sampled path, >= 4
+  int max_window = 60;           // steps of one optimisation window, >= 4
+  int rows_per_window = 512;     // obstacle rows of one window's QP, >= 0
+
+  [[nodiscard]] constexpr bool is_valid() const noexcept {
+    return max_horizon >= 2 && num_streams >= 1 && num_streams <= kMaxStreams &&
+           nodes_per_stream >= 4 && max_path_vertices >= 4 && max_window >= 4 &&
+           rows_per_window >= 0;
+  }
+};
+
+// What one request may ask for; 0 or a negative default says "derive it", as documented.
+struct PlanOptions {
+  // --- trajectory
+  double speed_mps = 0.0;         // operating speed; 0: (bounds diagonal / 200, at most 4 r) / dt
+  double dt_s = 0.1;              // step before time scaling
+  double margin_m = 0.05;         // clearance wanted from obstacles and bounds
+  double min_clearance_m = 1e-4;  // hard: verify rejects below it
+  // --- sampler
+  SamplerMode sampler = SamplerMode::kRrtStarConnect;
+  int num_samples = 20000;  // per stream and batch, over all rungs of the margin ladder
+  int num_batches = 4;      // batches before `no_path`
+  int num_streams = 0;      // 0: as many as the settings have
+  bool shortcut = true;
+  // --- optimiser
+  int num_segments = 0;  // 0: automatic, from the horizon
+  int max_window = 0;    // steps; 0: what the settings allow
+  bool merge = true;
+  bool time_scaling = true;
+  int max_iterations = 20;  // [Leu22, III-B termination (1)]
+  double tol_step = 1e-3;   // cost per step, see opt/optimizer.h
+};
+
+}  // namespace sopt

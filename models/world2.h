@@ -1,0 +1,121 @@
+// The known world of a planar robot: rectangular bounds and convex obstacles, immutable while a
+// request is planned. Filled at setup or between requests (`reset`, `try_add`, `build`), no heap.
+// All distances are those of a point or segment; the robot's radius is added by the caller. Bounds
+// count as walls: leaving them is a penetration.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "alloc/fixed_vector.h"
+#include "models/broad_phase2.h"
+#include "models/clearance2.h"
+#include "models/config.h"
+#include "models/convex2.h"
+#include "models/margin.h"
+#include "rt/annotations.h"
+
+namespace sopt {
+
+enum class WorldStatus : std::int8_t {
+  kOk = 0,
+  kNotReset = -1,          // default: nothing was done
+  kNotFinite = -2,         // a coordinate or size is NaN or infinite
+  kBadBounds = -3,         // lower >= upper on an axis
+  kBadSize = -4,           // radius or extent <= 0, or margin < 0
+  kBadVertexCount = -5,    // fewer than 3 or more than kMaxPolygonVertices vertices
+  kNotConvex = -6,         // a vertex turns right, or the outline winds more than once
+  kClockwise = -7,         // convex, but listed clockwise
+  kDegenerate = -8,        // vertices coincide or enclose no area
+  kTooManyObstacles = -9,  // WorldCapacity::max_obstacles
+  kTooManyVertices = -10,  // WorldCapacity::max_vertices
+};
+
+// Stands for the bounds where an obstacle's index is expected.
+inline constexpr int kBoundsObstacle = -1;
+// Stands for "no obstacle near".
+inline constexpr int kNoObstacle = -2;
+
+// The nearest thing to a segment.
+struct NearestObstacle {
+  double distance_m = std::numeric_limits<double>::infinity();
+  int i_obstacle = kNoObstacle;
+};
+
+class World2 {
+ public:
+  World2(Arena& arena, const WorldCapacity& capacity) noexcept;
+  [[nodiscard]] static std::size_t required_bytes(const WorldCapacity& capacity) noexcept;
+
+  // Empties the world and sets its bounds.
+  [[nodiscard]] WorldStatus reset(const Aabb2& bounds) noexcept;
+
+  // Adds one obstacle; on a status other than kOk nothing was added. `margin_m` replaces the
+  // request's margin for this obstacle; kDefaultMargin keeps it.
+  [[nodiscard]] WorldStatus try_add(const Disc& disc, double margin_m = kDefaultMargin) noexcept;
+  [[nodiscard]] WorldStatus try_add(const Box2& box, double margin_m = kDefaultMargin) noexcept;
+  [[nodiscard]] WorldStatus try_add(const Polygon2& polygon,
+                                    double margin_m = kDefaultMargin) noexcept;
+
+  // Builds the broad phase; call once after the last obstacle and before the first query.
+  void build() noexcept;
+
+  [[nodiscard]] int num_obstacles() const SOPT_RT { return obstacles_.size(); }
+  [[nodiscard]] const Aabb2& bounds() const SOPT_RT { return bounds_; }
+  [[nodiscard]] ConvexView obstacle(int i) const SOPT_RT;
+  // Own margin of obstacle i, or kDefaultMargin.
+  [[nodiscard]] double obstacle_margin_m(int i) const SOPT_RT { return obstacles_[i].margin_m; }
+  // Box around obstacle i, radius included.
+  [[nodiscard]] const Aabb2& obstacle_box(int i) const SOPT_RT { return boxes_[i]; }
+
+  // Clearance wanted from obstacle i (kBoundsObstacle: from the bounds) under `rule`.
+  [[nodiscard]] double required_m(int i, const ClearanceRule& rule) const SOPT_RT {
+    return rule.required_m(i == kBoundsObstacle ? kDefaultMargin : obstacles_[i].margin_m);
+  }
+  // The largest clearance any obstacle asks for under `rule`.
+  [[nodiscard]] double max_required_m(const ClearanceRule& rule) const SOPT_RT {
+    return std::max(rule.required_m(kDefaultMargin), rule.required_m(max_own_margin_m_));
+  }
+
+  // Signed distance of segment [p, q] to the bounds: positive inside.
+  [[nodiscard]] double bounds_distance(const Vec2& p, const Vec2& q) const SOPT_RT;
+
+  // The nearest obstacle or bound within `limit_m` of segment [p, q]; kNoObstacle and limit_m if
+  // there is none.
+  [[nodiscard]] NearestObstacle nearest(const Vec2& p, const Vec2& q, double limit_m) const SOPT_RT;
+
+  // True when a disc of `radius_m` that moves from p to q keeps the clearance that `rule` asks for
+  // from every obstacle and from the bounds. Exact.
+  [[nodiscard]] bool is_clear(const Vec2& p, const Vec2& q, double radius_m,
+                              const ClearanceRule& rule) const SOPT_RT;
+
+  // See BroadPhase2::for_each_near; visits obstacle indices.
+  template <class Visit>
+  bool for_each_near(const Vec2& p, const Vec2& q, double radius_m, Visit&& visit) const {
+    return broad_phase_.for_each_near(p, q, radius_m, static_cast<Visit&&>(visit));
+  }
+
+ private:
+  struct Obstacle {
+    int first_vertex = 0;  // in the vertex arrays
+    int num_vertices = 0;
+    int num_padded = 0;
+    double radius_m = 0.0;
+    double margin_m = kDefaultMargin;
+  };
+
+  [[nodiscard]] WorldStatus try_add_core(std::span<const Vec2> vertices, double radius_m,
+                                         double margin_m) noexcept;
+
+  Aabb2 bounds_;
+  FixedVector<Obstacle> obstacles_;
+  FixedVector<Aabb2> boxes_;
+  // Per vertex, see ConvexView.
+  FixedVector<double> x_, y_, edge_x_, edge_y_, inv_edge2_, normal_x_, normal_y_, offset_;
+  BroadPhase2 broad_phase_;
+  double max_own_margin_m_ = kDefaultMargin;
+  bool is_reset_ = false;
+};
+
+}  // namespace sopt

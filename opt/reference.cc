@@ -1,0 +1,31 @@
+#include "opt/reference.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sopt {
+
+template <class Robot>
+bool make_reference(const Path<Robot>& path, double step_length, double dt_s,
+                    Trajectory<Robot>& out) SOPT_RT {
+  const auto& v = path.vertices;
+  out.dt_s = dt_s;
+  out.states.clear();
+  if (!out.states.try_push_back(v[0])) return false;
+  const int min_steps = v.size() == 2 ? 2 : 1;  // one window needs a waypoint to move
+  for (int i = 0; i + 1 < v.size(); ++i) {
+    const double exact = std::ceil(Robot::path_distance(v[i], v[i + 1]) / step_length);
+    if (exact > out.states.capacity()) return false;
+    const int num_steps = std::max(min_steps, static_cast<int>(exact));
+    for (int k = 1; k < num_steps; ++k) {
+      const double share = static_cast<double>(k) / num_steps;
+      if (!out.states.try_push_back(Robot::interpolate(v[i], v[i + 1], share))) return false;
+    }
+    if (!out.states.try_push_back(v[i + 1])) return false;
+  }
+  return true;
+}
+
+template bool make_reference(const Path<Point2>&, double, double, Trajectory<Point2>&) SOPT_RT;
+
+}  // namespace sopt

@@ -1,0 +1,24 @@
+// Path -> plan 0 [Leu22, III-A "generate_reference"]. Dynamically exact from the first moment: for
+// the point robot every motion of the path is cut into equal steps no longer than the operating
+// speed allows, with a waypoint at every vertex. So the reference follows the checked path exactly,
+// keeps its clearances, and the planner can be stopped at any time from here on.
+// Deviation: the paper starts from u = 0 with states from the path.
+#pragma once
+
+#include "models/point2.h"
+#include "models/trajectory.h"
+#include "rt/annotations.h"
+
+namespace sopt {
+
+// Fills `out.states` and dt; steps have path length in [step_length / 2, step_length], but for
+// motions of the path shorter than half a step. At least 2 steps. False when the horizon exceeds
+// the capacity of `out`. The path has at least two vertices; step_length > 0.
+template <class Robot>
+[[nodiscard]] bool make_reference(const Path<Robot>& path, double step_length, double dt_s,
+                                  Trajectory<Robot>& out) SOPT_RT;
+
+extern template bool make_reference(const Path<Point2>&, double, double,
+                                    Trajectory<Point2>&) SOPT_RT;
+
+}  // namespace sopt

@@ -1,0 +1,110 @@
+// sOpt [Leu22, Alg. 1 l.6-20]: sweeps over windows, odd and even in turn, until the cost stops
+// falling. Cost: f = sum |z(t+1) - z(t)|^2 / ds, which equals path length at uniform speed. With
+// both ends of every window fixed the windows' costs add up to f, so sweeps are block-coordinate
+// descent: f never rises, and every iterate is as feasible as plan 0 (docs/algorithm.md).
+// Stops after max_iterations, when two sweeps in a row (both parities) gain at most tol_step H, or
+// at the deadline; the trajectory is whole at every window.
+// Merging [Leu22, eq. 3]: neighbours that together gained at most 2 tol_step H / N become one
+// window. Deviation: the printed epsilon is read per step; with epsilon = 1e-3 H as in the paper's
+// stopping rule every window would merge in the first sweep. Windows that failed never merge; a
+// window that failed is cut in two, for good.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "models/config.h"
+#include "models/margin.h"
+#include "models/point2.h"
+#include "models/trajectory.h"
+#include "opt/splits.h"
+#include "opt/window_optimizer.h"
+#include "rt/annotations.h"
+#include "rt/clock.h"
+#include "rt/deadline.h"
+#include "rt/executor.h"
+
+namespace sopt {
+
+// State after one sweep; entry 0 is the reference.
+struct IterationRecord {
+  int iteration = 0;
+  double cost = 0.0;
+  double path_length = 0.0;  // m
+  int segments = 0;
+  std::int64_t time_ns = 0;  // since the optimiser began
+};
+
+struct OptimizerCounts {
+  std::int64_t clearance_queries = 0;
+  std::int64_t qp_solves = 0;
+  std::int64_t qp_steps = 0;
+  std::int64_t windows_failed = 0;  // no rows, no QP solution, or step rejected
+};
+
+enum class OptimizerStatus : std::int8_t {
+  kConverged = 0,
+  kIterationLimit = 1,
+  kDeadline = 2,   // the trajectory is as good as the sweeps that fitted
+  kCapacity = -1,  // the splits do not fit
+};
+
+template <class Robot>
+struct OptimizerProblem {
+  const Robot* robot = nullptr;
+  const typename Robot::World* world = nullptr;
+  MarginProfile profile;
+  double ds_m = 0.0;  // nominal step length
+  const PlanOptions* options = nullptr;
+};
+
+template <class Robot>
+struct OptimizerResult {
+  OptimizerStatus status = OptimizerStatus::kCapacity;
+  int iterations = 0;
+  int segments_initial = 0;
+  int segments_final = 0;
+  double cost = 0.0;
+  OptimizerCounts counts;
+  std::span<const IterationRecord> history;
+  std::span<const int> splits;
+};
+
+template <class Robot>
+class SegmentedOptimizer {
+ public:
+  SegmentedOptimizer(Arena& arena, const PlannerSettings& settings, Executor& executor,
+                     Clock clock) noexcept;
+
+  // Improves trajectory.states in place; inputs and dt are the caller's. At least 2 steps.
+  [[nodiscard]] OptimizerResult<Robot> optimize(const OptimizerProblem<Robot>& problem,
+                                                Trajectory<Robot>& trajectory,
+                                                const Deadline& deadline) SOPT_RT;
+
+ private:
+  // What a sweep did, over all its windows.
+  struct SweepSummary {
+    double gain = 0.0;            // of cost
+    double displacement_m = 0.0;  // largest move of a waypoint
+    bool was_shortened = false;   // a step ended at the trust radius
+  };
+
+  [[nodiscard]] SweepSummary sweep(const SweepProblem<Robot>& problem, const Deadline& deadline,
+                                   OptimizerCounts& counts) SOPT_RT;
+  void adapt_windows(double max_merge_gain, int max_window) SOPT_RT;
+  void record(int iteration, double ds_m, const Trajectory<Robot>& trajectory,
+              std::int64_t begin_ns) SOPT_RT;
+
+  PlannerSettings settings_;
+  Executor* executor_;
+  Clock clock_;
+  Splits splits_;
+  FixedVector<Window> windows_;        // of the current sweep
+  FixedVector<WindowResult> results_;  // of the same windows
+  FixedVector<IterationRecord> history_;
+  WindowOptimizer<Robot>* workers_ = nullptr;  // one per worker
+};
+
+extern template class SegmentedOptimizer<Point2>;
+
+}  // namespace sopt

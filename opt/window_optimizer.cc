@@ -1,0 +1,107 @@
+#include "opt/window_optimizer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sopt {
+namespace {
+
+// Moves below this are rounding, not progress.
+constexpr double kConverged_m = 1e-9;
+
+double window_cost(std::span<const Vec2> states, const Window& window, double ds_m) noexcept {
+  double sum = 0.0;
+  for (int t = window.first; t < window.last; ++t) {
+    const auto i = static_cast<std::size_t>(t);
+    sum += (states[i + 1] - states[i]).squaredNorm();
+  }
+  return sum / ds_m;
+}
+
+double rows_cost(const PointRows& rows, double ds_m) noexcept {
+  double sum = 0.0;
+  for (int t = 0; t < rows.num_steps(); ++t) {
+    sum += (rows.position(t + 1) - rows.position(t)).squaredNorm();
+  }
+  return sum / ds_m;
+}
+
+double max_displacement(const PointRows& rows, const Vec2* reference) noexcept {
+  double largest2 = 0.0;
+  for (int t = 1; t < rows.num_steps(); ++t) {
+    largest2 = std::max(largest2, (rows.position(t) - reference[t]).squaredNorm());
+  }
+  return std::sqrt(largest2);
+}
+
+}  // namespace
+
+// A waypoint of the plane has at most two linearly independent active rows.
+WindowOptimizer<Point2>::WindowOptimizer(Arena& arena, const PlannerSettings& settings) noexcept
+    : rows_(arena, settings.max_window, settings.rows_per_window),
+      qp_(arena, 2 * settings.max_window) {}
+
+WindowResult WindowOptimizer<Point2>::optimize(const SweepProblem<Point2>& problem,
+                                               const Window& window,
+                                               const Deadline& deadline) SOPT_RT {
+  WindowResult result;
+  result.cost_before = window_cost(problem.states, window, problem.ds_m);
+  result.cost_after = result.cost_before;
+  if (window.num_steps() < 2) {
+    result.status = WindowStatus::kTooShort;
+    return result;
+  }
+  if (deadline.expired()) return result;
+
+  double trust_m = problem.trust_m;
+  int halvings = 0;
+  while (!make_obstacle_rows(*problem.robot, *problem.world, problem.profile, problem.states,
+                             window, trust_m, rows_, result.clearance_queries)) {
+    trust_m *= 0.5;
+    if (++halvings > kMaxTrustHalvings) {
+      result.status = WindowStatus::kNoRows;
+      return result;
+    }
+  }
+  const QpResult qp = qp_.solve(rows_, QpOptions{}, deadline);
+  result.qp_status = qp.status;
+  result.qp_solves = 1;
+  result.qp_steps = qp.num_steps;
+  result.has_active_rows = qp.num_active > 0;
+  result.status = qp.status == QpStatus::kOptimal ? take_step(problem, window, trust_m, result)
+                                                  : WindowStatus::kQpFailed;
+  return result;
+}
+
+// Shortens the way to the QP's solution until it is within the trust radius, keeps all rows and
+// does not raise the cost; then writes it.
+WindowStatus WindowOptimizer<Point2>::take_step(const SweepProblem<Point2>& problem,
+                                                const Window& window, double trust_m,
+                                                WindowResult& result) SOPT_RT {
+  Vec2* const reference = problem.states.data() + window.first;
+  const double full_m = max_displacement(rows_, reference);
+  if (full_m <= kConverged_m) return WindowStatus::kConverged;
+  double displacement_m = full_m;
+  if (full_m > trust_m) {
+    rows_.shorten_step(reference, trust_m / full_m);
+    displacement_m = trust_m;
+    result.was_shortened = true;
+  }
+  for (int halving = 0; halving <= kMaxStepHalvings; ++halving) {
+    if (halving > 0) {
+      rows_.shorten_step(reference, 0.5);
+      displacement_m *= 0.5;
+    }
+    const int worst = rows_.most_violated();
+    const double cost = rows_cost(rows_, problem.ds_m);
+    if (cost > result.cost_before) continue;
+    if (worst >= 0 && rows_.violation(worst) > kRowTolerance_m) continue;
+    for (int t = 1; t < rows_.num_steps(); ++t) reference[t] = rows_.position(t);
+    result.cost_after = cost;
+    result.displacement_m = displacement_m;
+    return WindowStatus::kMoved;
+  }
+  return WindowStatus::kRejected;
+}
+
+}  // namespace sopt

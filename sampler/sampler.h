@@ -1,0 +1,101 @@
+// Request -> path: the parallel RRT* of [Leu22, III-A] as independent streams in rounds of a fixed
+// number of samples, on however many workers there are. After a round with at least one path every
+// path found is shortened, and the shortest wins, ties by stream id: the answer depends on the
+// request alone. Without a path the next round follows; a rung of the margin ladder that used its
+// share of samples gives way to the next rung, a batch to the next batch, up to the budget.
+// Deviation: the winner is chosen after shortcutting, not before; the raw length of a first path
+// says little about its homotopy (docs/RESULTS.md).
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "models/config.h"
+#include "models/trajectory.h"
+#include "rt/clock.h"
+#include "rt/deadline.h"
+#include "rt/executor.h"
+#include "sampler/path_graph.h"
+#include "sampler/sampler_stream.h"
+
+namespace sopt {
+
+enum class SamplerStatus : std::int8_t {
+  kOk = 0,
+  kNoPath = -1,  // the budget of samples ended
+  kDeadline = -2,
+  kCapacity = -3,  // a path exists but has more vertices than the settings allow
+};
+
+struct SamplerCounts {
+  std::int64_t nodes = 0;  // in the trees when the search ended
+  std::int64_t edges = 0;  // motions checked
+  std::int64_t rounds = 0;
+};
+
+// One profile per rung of the margin ladder, widest first.
+using MarginLadder = std::array<MarginProfile, kMarginRungs.size()>;
+
+template <class Robot>
+struct SamplerProblem {
+  const Robot* robot = nullptr;
+  const typename Robot::World* world = nullptr;
+  typename Robot::Config start{};
+  typename Robot::Config goal{};
+  const MarginLadder* ladder = nullptr;
+  std::uint64_t seed = 1;
+  const PlanOptions* options = nullptr;
+};
+
+template <class Robot>
+struct SamplerResult {
+  SamplerStatus status = SamplerStatus::kNoPath;
+  const Path<Robot>* path = nullptr;  // the winner, shortened; valid until the next find_path
+  int i_rung = 0;                     // of the ladder that gave it
+  double raw_length = 0.0;            // of the winner before shortening
+  SamplerCounts counts;
+  std::int64_t sample_ns = 0;
+  std::int64_t shortcut_ns = 0;
+};
+
+template <class Robot>
+class Sampler {
+ public:
+  Sampler(Arena& arena, const PlannerSettings& settings, Executor& executor, Clock clock) noexcept;
+
+  [[nodiscard]] SamplerResult<Robot> find_path(const SamplerProblem<Robot>& problem,
+                                               const Deadline& deadline) SOPT_RT;
+
+  // Streams of the last call, for pictures.
+  [[nodiscard]] int num_streams() const noexcept { return num_streams_; }
+  [[nodiscard]] const SamplerStream<Robot>& stream(int i) const noexcept {
+    return streams_[static_cast<std::size_t>(i)];
+  }
+
+ private:
+  // Samples per stream and round. A round is the unit after which streams are compared: longer
+  // rounds let more streams finish and compete, shorter ones stop earlier.
+  static constexpr int kRoundSamples = 128;
+
+  [[nodiscard]] SamplerStatus search_rung(const SamplerProblem<Robot>& problem, int i_batch,
+                                          int i_rung, const Deadline& deadline,
+                                          SamplerResult<Robot>& result) SOPT_RT;
+  void shorten_paths(const SamplerProblem<Robot>& problem, const MarginProfile& profile,
+                     const Deadline& deadline, SamplerResult<Robot>& result) SOPT_RT;
+  void combine_paths(const SamplerProblem<Robot>& problem, const MarginProfile& profile,
+                     const Deadline& deadline, SamplerResult<Robot>& result) SOPT_RT;
+
+  int max_streams_ = 0;
+  int num_streams_ = 0;
+  std::array<SamplerStream<Robot>, kMaxStreams> streams_;
+  std::array<double, kMaxStreams> raw_length_{};
+  std::array<std::int64_t, kMaxStreams> shortcut_checks_{};
+  PathGraph<Robot> graph_;
+  Path<Robot> combined_;
+  Executor* executor_;
+  Clock clock_;
+};
+
+extern template class Sampler<Point2>;
+
+}  // namespace sopt

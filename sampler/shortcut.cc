@@ -1,0 +1,107 @@
+#include "sampler/shortcut.h"
+
+#include <algorithm>
+
+namespace sopt {
+namespace {
+
+// A point of the path: on the motion from vertex i to i + 1.
+template <class Robot>
+struct PathPoint {
+  int i_vertex = 0;
+  double from_start = 0.0;  // path length up to it
+  typename Robot::Config config{};
+};
+
+template <class Robot>
+PathPoint<Robot> point_at(const Path<Robot>& path, double from_start) SOPT_RT {
+  const auto& v = path.vertices;
+  double passed = 0.0;
+  for (int i = 0; i + 1 < v.size(); ++i) {
+    const double length = Robot::path_distance(v[i], v[i + 1]);
+    if (from_start <= passed + length && length > 0.0) {
+      const double share = (from_start - passed) / length;
+      return {i, from_start, Robot::interpolate(v[i], v[i + 1], share)};
+    }
+    passed += length;
+  }
+  return {v.size() - 2, passed, v.back()};
+}
+
+// Replaces what lies between `a` and `b` by the motion a -> b.
+template <class Robot>
+bool splice(Path<Robot>& path, const PathPoint<Robot>& a, const PathPoint<Robot>& b) SOPT_RT {
+  auto& v = path.vertices;
+  const int first = a.i_vertex + 1;    // first vertex that goes
+  const int last = b.i_vertex + 1;     // first vertex that stays
+  const int shift = first + 2 - last;  // two new vertices
+  const int old_size = v.size();
+  if (shift > 0) {
+    if (!v.try_resize(old_size + shift)) return false;
+    std::copy_backward(v.begin() + last, v.begin() + old_size, v.end());
+  } else {
+    std::copy(v.begin() + last, v.begin() + old_size, v.begin() + last + shift);
+    if (!v.try_resize(old_size + shift)) return false;
+  }
+  v[first] = a.config;
+  v[first + 1] = b.config;
+  return true;
+}
+
+RequestEnd end_of(int i_vertex, int num_vertices) SOPT_RT {
+  if (i_vertex == 0) return RequestEnd::kStart;
+  return i_vertex == num_vertices - 1 ? RequestEnd::kGoal : RequestEnd::kNone;
+}
+
+// From each kept vertex goes on to the farthest one, at most kMaxSkip ahead, that it sees.
+template <class Robot>
+void drop_vertices(MotionChecker<Robot>& checker, const Deadline& deadline,
+                   Path<Robot>& path) SOPT_RT {
+  auto& v = path.vertices;
+  const int size = v.size();
+  int num_kept = 1;
+  for (int at = 0; at + 1 < size;) {
+    int next = std::min(at + kMaxSkip, size - 1);
+    while (next > at + 1 &&
+           (deadline.expired() ||
+            !checker.is_clear(v[num_kept - 1], end_of(at, size), v[next], end_of(next, size)))) {
+      --next;
+    }
+    v[num_kept++] = v[next];
+    at = next;
+  }
+  (void)v.try_resize(num_kept);
+}
+
+template <class Robot>
+void replace_stretches(MotionChecker<Robot>& checker, CounterRng& rng, const Deadline& deadline,
+                       Path<Robot>& path) SOPT_RT {
+  double length = path.length();
+  for (int i = 0; i < kShortcutTries && path.vertices.size() > 2 && !deadline.expired(); ++i) {
+    const double s = rng.next_uniform() * length;
+    const double t = rng.next_uniform() * length;
+    const PathPoint<Robot> a = point_at(path, std::min(s, t));
+    const PathPoint<Robot> b = point_at(path, std::max(s, t));
+    if (a.i_vertex == b.i_vertex) continue;
+    const double gain = b.from_start - a.from_start - Robot::path_distance(a.config, b.config);
+    if (gain <= 1e-9 * length) continue;
+    if (!checker.is_clear(a.config, RequestEnd::kNone, b.config, RequestEnd::kNone)) continue;
+    if (!splice(path, a, b)) return;
+    length -= gain;
+  }
+}
+
+}  // namespace
+
+template <class Robot>
+void shortcut_path(MotionChecker<Robot>& checker, CounterRng& rng, const Deadline& deadline,
+                   Path<Robot>& path) SOPT_RT {
+  drop_vertices(checker, deadline, path);
+  replace_stretches(checker, rng, deadline, path);
+  drop_vertices(checker, deadline, path);
+}
+
+template void shortcut_path(MotionChecker<Point2>&, CounterRng&, const Deadline&,
+                            Path<Point2>&) SOPT_RT;
+
+}  // namespace sopt
