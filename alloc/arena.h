@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <new>
 #include <type_traits>
@@ -49,6 +50,10 @@ class Arena {
   Arena() noexcept = default;
 
   [[nodiscard]] std::byte* take_bytes(std::size_t count, std::size_t size_B) noexcept {
+    if (count > (std::numeric_limits<std::size_t>::max() - kAlignment) / size_B) {
+      exhausted_ = true;
+      return nullptr;
+    }
     const std::size_t wanted_B = (count * size_B + kAlignment - 1) / kAlignment * kAlignment;
     if (!measuring_ && (exhausted_ || wanted_B > size_B_ - used_B_)) {
       exhausted_ = true;

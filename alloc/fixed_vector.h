@@ -7,6 +7,7 @@
 #include <cassert>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 #include "alloc/arena.h"
 #include "rt/annotations.h"
@@ -26,8 +27,13 @@ class FixedVector {
         capacity_(data_ == nullptr ? 0 : capacity) {}
   FixedVector(const FixedVector&) = delete;
   FixedVector& operator=(const FixedVector&) = delete;
-  FixedVector(FixedVector&&) noexcept = default;
-  FixedVector& operator=(FixedVector&&) noexcept = default;
+  // The moved-from vector holds nothing and has no capacity.
+  FixedVector(FixedVector&& other) noexcept { swap(other); }
+  FixedVector& operator=(FixedVector&& other) noexcept {
+    FixedVector moved(static_cast<FixedVector&&>(other));
+    swap(moved);
+    return *this;
+  }
 
   [[nodiscard]] int size() const SOPT_RT { return size_; }
   [[nodiscard]] int capacity() const SOPT_RT { return capacity_; }
@@ -76,6 +82,12 @@ class FixedVector {
   }
 
  private:
+  void swap(FixedVector& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(capacity_, other.capacity_);
+    std::swap(size_, other.size_);
+  }
+
   T* data_ = nullptr;
   int capacity_ = 0;
   int size_ = 0;

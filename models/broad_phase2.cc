@@ -7,7 +7,6 @@ namespace sopt {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kEmptyLane = -1e300;  // not -infinity: times a zero direction it would be NaN
 
 // Nodes over n entries, all levels together: at most n/8 + n/64 + .. plus one partial per level.
 int max_nodes(int max_boxes, int fan_out, int max_depth) noexcept {

@@ -5,6 +5,7 @@
 // setup or between requests. Query: never misses a box (conservative at box corners).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -53,7 +54,9 @@ class BroadPhase2 {
 
  private:
   static constexpr int kFanOut = 8;
-  static constexpr int kMaxDepth = 12;  // 8^12 boxes
+  static constexpr int kMaxDepth = 12;           // 8^12 boxes
+  static constexpr double kEmptyLane = -1e300;   // half extent of unused lanes
+  static constexpr double kMaxRadius_m = 1e290;  // beyond it unused lanes would overlap
 
   struct Node {
     double center_x[kFanOut], center_y[kFanOut];
@@ -67,15 +70,17 @@ class BroadPhase2 {
   };
 
   struct ThickSegment {
-    double mid_x, mid_y, half_x, half_y;  // of the segment, half extents grown by the radius
-    double dir_x, dir_y, radius;          // unit direction; zero for a point
+    double mid_x, mid_y;  // of the segment
+    double radius;
+    double half_x, half_y;  // half extents of the segment grown by the radius
+    double dir_x, dir_y;    // unit direction; zero for a point
 
     ThickSegment(const Vec2& p, const Vec2& q, double radius_m) noexcept
         : mid_x(0.5 * (p.x() + q.x())),
           mid_y(0.5 * (p.y() + q.y())),
-          half_x(0.5 * std::abs(q.x() - p.x()) + radius_m),
-          half_y(0.5 * std::abs(q.y() - p.y()) + radius_m),
-          radius(radius_m) {
+          radius(std::min(radius_m, kMaxRadius_m)) {
+      half_x = 0.5 * std::abs(q.x() - p.x()) + radius;
+      half_y = 0.5 * std::abs(q.y() - p.y()) + radius;
       const double length2 = (q - p).squaredNorm();
       const double inv = length2 > 0.0 ? 1.0 / std::sqrt(length2) : 0.0;
       dir_x = (q.x() - p.x()) * inv;

@@ -193,7 +193,15 @@ Clearance2 from_axes(const ConvexView& o, const Segment& s, const SideRange& sid
   } else if (face.value >= side.separation()) {
     c.normal = Vec2(o.normal_x[face.i_face], o.normal_y[face.i_face]);
     c.distance_m = face.value - o.radius_m;
-    c.on_segment = c.normal.dot(s.p) <= c.normal.dot(s.q) ? s.p : s.q;
+    const double rise_m = c.normal.dot(s.d);
+    if (std::abs(rise_m) > kTouching_m) {
+      c.on_segment = rise_m > 0.0 ? s.p : s.q;
+    } else {
+      // Parallel to the face: the part of the segment that is beside it.
+      const Vec2 middle(o.x[face.i_face] + 0.5 * o.edge_x[face.i_face],
+                        o.y[face.i_face] + 0.5 * o.edge_y[face.i_face]);
+      c.on_segment = closest_on_segment(s, middle);
+    }
   } else {
     // lower > -upper: most of the obstacle is to the left, so the way out is to the right.
     c.normal = side.lower > -side.upper ? Vec2(-left) : left;
@@ -254,7 +262,7 @@ bool is_within(const ConvexView& obstacle, const Vec2& p, const Vec2& q, double 
   if (face >= limit) return false;
   const double side = side_range(obstacle, s).separation();
   if (side >= limit) return false;
-  if (face <= 0.0 && side <= 0.0) return limit > 0.0;
+  if (face <= 0.0 && side <= 0.0) return true;
   return min_feature_distance2(obstacle, s) < limit * limit;
 }
 

@@ -33,6 +33,8 @@ struct PlannerSettings {
            nodes_per_stream >= 4 && max_path_vertices >= 4 && max_window >= 4 &&
            rows_per_window >= 0;
   }
+  // The least that is valid.
+  [[nodiscard]] static constexpr PlannerSettings smallest() noexcept { return {2, 1, 4, 4, 4, 0}; }
 };
 
 // What one request may ask for; 0 or a negative default says "derive it", as documented.

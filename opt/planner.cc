@@ -95,11 +95,11 @@ template <class Robot>
 Planner<Robot>::Planner(Arena& arena, const Robot& robot, const PlannerSettings& settings,
                         Executor& executor, Clock clock) noexcept
     : robot_(robot),
-      settings_(settings),
+      settings_(settings.is_valid() ? settings : PlannerSettings::smallest()),
       clock_(clock),
-      sampler_(arena, settings, executor, clock),
-      optimizer_(arena, settings, executor, clock) {
-  for (Slot& slot : slots_) slot.trajectory = Trajectory<Robot>(arena, settings.max_horizon);
+      sampler_(arena, settings_, executor, clock),
+      optimizer_(arena, settings_, executor, clock) {
+  for (Slot& slot : slots_) slot.trajectory = Trajectory<Robot>(arena, settings_.max_horizon);
   is_ready_ = settings.is_valid() && !arena.exhausted();
 }
 

@@ -98,6 +98,7 @@ double PointRows::violation(int i) const SOPT_RT {
 }
 
 int PointRows::most_violated() const SOPT_RT {
+  if (groups_.empty()) return -1;
   V4d worst = splat4(-kInfinity);
   V4d worst_group = splat4(-1.0);
   for (int g = 0; g < groups_.size(); ++g) {

@@ -24,6 +24,10 @@ bool failed(const WindowResult& result) noexcept {
          result.status == WindowStatus::kRejected;
 }
 
+bool was_cut(const WindowResult& result) noexcept {
+  return result.status == WindowStatus::kNotRun || result.qp_status == QpStatus::kDeadline;
+}
+
 bool may_merge(const WindowResult& result) noexcept {
   return result.status == WindowStatus::kMoved || result.status == WindowStatus::kConverged;
 }
@@ -81,14 +85,14 @@ OptimizerResult<Robot> SegmentedOptimizer<Robot>::optimize(const OptimizerProble
   int small_gains = 0;  // sweeps in a row with little gain
   result.status = OptimizerStatus::kIterationLimit;
   for (int k = 1; k <= options.max_iterations; ++k) {
-    if (deadline.expired()) {
-      result.status = OptimizerStatus::kDeadline;
-      break;
-    }
     splits_.list_windows(k % 2 == 1 ? Parity::kOdd : Parity::kEven, windows_);
     const SweepSummary summary = sweep(sweep_problem, deadline, result.counts);
     result.iterations = k;
     record(k, problem.ds_m, trajectory, begin_ns);
+    if (summary.was_cut) {
+      result.status = OptimizerStatus::kDeadline;
+      break;
+    }
     small_gains = summary.gain <= min_gain ? small_gains + 1 : 0;
     if (small_gains == 2 && options.tol_step > 0.0) {
       result.status = OptimizerStatus::kConverged;
@@ -123,6 +127,7 @@ auto SegmentedOptimizer<Robot>::sweep(const SweepProblem<Robot>& problem, const 
     summary.gain += result.cost_before - result.cost_after;
     summary.displacement_m = std::max(summary.displacement_m, result.displacement_m);
     summary.was_shortened = summary.was_shortened || result.was_shortened;
+    summary.was_cut = summary.was_cut || was_cut(result);
     counts.clearance_queries += result.clearance_queries;
     counts.qp_solves += result.qp_solves;
     counts.qp_steps += result.qp_steps;

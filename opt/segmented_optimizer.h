@@ -87,6 +87,7 @@ class SegmentedOptimizer {
     double gain = 0.0;            // of cost
     double displacement_m = 0.0;  // largest move of a waypoint
     bool was_shortened = false;   // a step ended at the trust radius
+    bool was_cut = false;         // the deadline kept a window from being optimised
   };
 
   [[nodiscard]] SweepSummary sweep(const SweepProblem<Robot>& problem, const Deadline& deadline,

@@ -245,6 +245,7 @@ class Check {
 
   // Whether something at least `distance_m` away at step t or later can change the outcome.
   [[nodiscard]] bool is_relevant(int t, double distance_m) const noexcept {
+    if (distance_m <= 0.0) return true;  // boxes overlap: that bounds nothing
     const double clearance_m = distance_m - robot_.radius_m;
     if (clearance_m < certificate_.min_clearance_m) return true;
     return clearance_m < problem_.min_clearance_m && t <= violation_.step;

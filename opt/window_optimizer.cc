@@ -6,8 +6,9 @@
 namespace sopt {
 namespace {
 
-// Moves below this are rounding, not progress.
+// Moves and relative gains below these are rounding, not progress.
 constexpr double kConverged_m = 1e-9;
+constexpr double kConvergedGain = 1e-13;
 
 double window_cost(std::span<const Vec2> states, const Window& window, double ds_m) noexcept {
   double sum = 0.0;
@@ -80,7 +81,10 @@ WindowStatus WindowOptimizer<Point2>::take_step(const SweepProblem<Point2>& prob
                                                 WindowResult& result) SOPT_RT {
   Vec2* const reference = problem.states.data() + window.first;
   const double full_m = max_displacement(rows_, reference);
-  if (full_m <= kConverged_m) return WindowStatus::kConverged;
+  const double full_cost = rows_cost(rows_, problem.ds_m);
+  if (full_m <= kConverged_m || full_cost >= result.cost_before * (1.0 - kConvergedGain)) {
+    return WindowStatus::kConverged;
+  }
   double displacement_m = full_m;
   if (full_m > trust_m) {
     rows_.shorten_step(reference, trust_m / full_m);

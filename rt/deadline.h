@@ -2,7 +2,7 @@
 // every work unit; a deadline that never expires costs one comparison and reads no clock.
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
@@ -16,9 +16,9 @@ class Deadline {
   Deadline() noexcept = default;
 
   // Expires `duration_s` seconds after `start_ns`, a reading of `clock`. An infinite duration, or
-  // one beyond the range of the clock (292 years), never expires.
+  // one beyond the range of the clock (292 years), never expires; a negative one has expired.
   Deadline(Clock clock, std::int64_t start_ns, double duration_s) noexcept : clock_(clock) {
-    const double at_ns = static_cast<double>(start_ns) + duration_s * 1e9;
+    const double at_ns = static_cast<double>(start_ns) + std::max(duration_s, 0.0) * 1e9;
     if (at_ns < static_cast<double>(kNever)) at_ns_ = static_cast<std::int64_t>(at_ns);
   }
 

@@ -1,0 +1,33 @@
+// The command-line options that say how to plan, shared by the subcommands that plan.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "models/config.h"
+
+namespace sopt {
+
+// What was given on the command line; everything else keeps the scene's value or the default.
+struct AlgorithmOptions {
+  std::optional<int> num_samples;
+  std::optional<int> num_streams;
+  std::string segments = "auto";
+  std::optional<int> max_window;
+  bool no_merge = false;
+  bool no_shortcut = false;
+  std::string sampler = "rrt_star_connect";
+  std::string resample = "scale";
+  std::optional<double> margin_m;
+  std::optional<double> speed_mps;
+  std::optional<double> dt_s;
+};
+
+// Registers the options; `options` must live as long as `command`.
+void add_algorithm_options(CLI::App& command, AlgorithmOptions& options);
+
+// Puts what was given over `plan`.
+void apply(const AlgorithmOptions& options, PlanOptions& plan);
+
+}  // namespace sopt

@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# Dependencies between folders go one way:
+#   rt -> alloc -> models -> {sampler, opt core} -> opt/planner -> tools -> tests
+# Every #include "..." names a file by its path from the project's root, and that file may be used
+# from the including file's layer. Prints each violation; exit code 1 when there is one.
+# usage: layers.sh [ROOT]
+set -euo pipefail
+root=${1:-$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)}
+cd "$root"
+
+layer_of() {
+  case $1 in
+    opt/planner.*) echo planner ;;
+    *) echo "${1%%/*}" ;;
+  esac
+}
+
+declare -A may_use=(
+  [rt]="rt"
+  [alloc]="rt alloc"
+  [models]="rt alloc models"
+  [sampler]="rt alloc models sampler"
+  [opt]="rt alloc models opt"
+  [planner]="rt alloc models sampler opt planner"
+  [tools]="rt alloc models sampler opt planner tools"
+  [tests]="rt alloc models sampler opt planner tools tests"
+)
+
+folders=()
+for folder in rt alloc models sampler opt tools tests; do
+  if [[ -d $folder ]]; then folders+=("$folder"); fi
+done
+
+num_violations=0
+num_includes=0
+violation() {
+  echo "$1"
+  num_violations=$((num_violations + 1))
+}
+
+# tests/install is a project of its own that includes the installed headers.
+while IFS=: read -r file line text; do
+  num_includes=$((num_includes + 1))
+  header=$(sed -E 's/^[^"]*"([^"]*)".*/\1/' <<<"$text")
+  from=$(layer_of "$file")
+  to=$(layer_of "$header")
+  if [[ ! -f $header ]]; then
+    violation "$file:$line: \"$header\" is not a path from the project's root"
+  elif [[ " ${may_use[$from]} " != *" $to "* ]]; then
+    violation "$file:$line: $from must not include \"$header\" ($to)"
+  fi
+done < <(grep -rnE --include='*.h' --include='*.cc' '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' \
+  "${folders[@]}" | grep -v '^tests/install/')
+
+# <rt/clock.h> would pass unseen above.
+while IFS= read -r hit; do
+  violation "$hit: a header of this project is included with \"\", not <>"
+done < <(grep -rnE --include='*.h' --include='*.cc' \
+  '^[[:space:]]*#[[:space:]]*include[[:space:]]*<(rt|alloc|models|sampler|opt|tools|tests)/' "${folders[@]}")
+
+if ((num_includes == 0)); then
+  violation "no include found under $root: nothing was checked"
+fi
+echo "$num_includes includes checked, $num_violations violations"
+((num_violations == 0))

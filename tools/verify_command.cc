@@ -1,0 +1,87 @@
+#include "tools/verify_command.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "opt/verify.h"
+#include "tools/json_fields.h"
+#include "tools/json_text.h"
+#include "tools/option_checks.h"
+#include "tools/output_file.h"
+#include "tools/plan_file.h"
+#include "tools/plan_report.h"
+
+namespace sopt {
+namespace {
+
+struct VerifyArguments {
+  std::string scene;
+  std::string plan;
+  std::string json;
+};
+
+nlohmann::ordered_json answer_to_json(const Scene& scene, const VerifyResult<Point2>& result) {
+  nlohmann::ordered_json answer;
+  answer["scene"] = scene.name;
+  answer["verified"] = result.plan.has_value();
+  if (result.plan) {
+    answer["certificate"] = certificate_to_json(scene, result.plan->certificate());
+  } else {
+    const Violation& violation = result.violation;
+    answer["violation"] = {{"kind", to_string(violation.kind)},
+                           {"step", violation.step},
+                           {"t_s", violation.t_s},
+                           {"link", violation.i_link},
+                           {"obstacle", obstacle_to_json(scene, violation.i_obstacle)},
+                           {"amount", violation.amount}};
+  }
+  return answer;
+}
+
+int run_verify(const VerifyArguments& arguments) {
+  if (!arguments.json.empty()) check_outputs({arguments.json}, {arguments.scene, arguments.plan});
+  const Scene scene = load_scene(arguments.scene);
+  const ReceivedPlan received = load_plan(arguments.plan);
+  VerifyProblem<Point2> problem{scene.start, scene.goal, scene.world.get()};
+  problem.min_clearance_m = make_request(scene).options.min_clearance_m;
+  const VerifyResult<Point2> result = verify(scene.robot, received.trajectory, problem);
+
+  if (!arguments.json.empty()) {
+    write_files({{arguments.json, to_text(answer_to_json(scene, result))}});
+  }
+  std::string text = (result.plan ? "verified  " : "rejected  ") + printable(received.scene_name) +
+                     ", " + std::to_string(received.trajectory.horizon()) + " steps\n";
+  if (received.scene_name != scene.name) {
+    text += "  note          the scene here is " + printable(scene.name) + '\n';
+  }
+  if (result.plan) {
+    text += describe_certificate(scene, result.plan->certificate());
+  } else if (received.trajectory.horizon() == 0) {
+    text += "  the file holds no plan, its status is " + received.status + '\n';
+  } else {
+    text += "  " + describe_violation(scene, result.violation, problem.min_clearance_m) + '\n';
+  }
+  (void)std::fputs(text.c_str(), stdout);
+  return result.plan ? 0 : 1;
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<VerifyArguments>();
+  CLI::App* const command =
+      app.add_subcommand("verify",
+                         "Check a plan file against its scene, independently of the "
+                         "planner: prints the certificate or the first violation");
+  command->add_option("SCENE", arguments->scene, "Scene file")->required()->type_name("FILE");
+  command->add_option("PLAN", arguments->plan, "Plan file, as written by sopt plan -o")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--json", arguments->json, "Write the answer for machines")
+      ->type_name("FILE")
+      ->check(file_check());
+  command->callback([arguments, &exit_code] { exit_code = run_verify(*arguments); });
+}
+
+}  // namespace sopt

@@ -1,0 +1,11 @@
+// `sopt verify SCENE PLAN`: the independent check on files.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace sopt {
+
+// The exit code is stored when the command has run; errors are thrown (tools/input_error.h).
+void add_verify_command(CLI::App& app, int& exit_code);
+
+}  // namespace sopt
