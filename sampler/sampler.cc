@@ -8,11 +8,10 @@
 namespace sopt {
 namespace {
 
-// Share of a batch's samples that each rung of the ladder may use: the wide ones fail fast.
-constexpr std::array<double, kMarginRungs.size()> kRungShare = {0.25, 0.25, 0.25, 0.25};
-
-// Samples that streams without a path may still take, relative to those until the first path.
-constexpr double kCompanyShare = 3.0;
+// Once there is a path the other streams may use this many times as many samples as that one did.
+constexpr int kCompany = 3;
+// They stop earlier when two paths are this close in length, relative, after shortening.
+constexpr double kAgreement = 0.01;
 
 constexpr std::uint64_t kShortcutKey = 0x73686F7274ULL;
 
@@ -51,10 +50,32 @@ template <class Robot>
 SamplerStatus Sampler<Robot>::search_rung(const SamplerProblem<Robot>& problem, int i_batch,
                                           int i_rung, const Deadline& deadline,
                                           SamplerResult<Robot>& result) SOPT_RT {
-  const std::int64_t begin_ns = clock_.now_ns();
-  const auto rung = static_cast<std::size_t>(i_rung);
-  const MarginProfile& profile = (*problem.ladder)[rung];
-  const StreamProblem<Robot> stream_problem{problem.robot, problem.world, profile,
+  const MarginProfile& profile = (*problem.ladder)[static_cast<std::size_t>(i_rung)];
+  Search search{&problem, &profile, &deadline, &result};
+  reset_streams(search, i_batch, i_rung);
+  auto run_stream = [&](int /*i_worker*/, int i) {
+    streams_[static_cast<std::size_t>(i)].run(kRoundSamples, deadline);
+  };
+  const auto is_done = [](const auto& stream) { return stream.has_path() || stream.exhausted(); };
+  const int share = problem.options->num_samples / static_cast<int>(kMarginRungs.size());
+  for (int used = 0, limit = share; used < limit && !deadline.expired(); used += kRoundSamples) {
+    if (std::all_of(active_streams().begin(), active_streams().end(), is_done)) break;
+    const std::int64_t begin_ns = clock_.now_ns();
+    executor_->run(Task(run_stream), num_streams_);
+    ++result.counts.rounds;
+    result.sample_ns += clock_.now_ns() - begin_ns;
+    const bool is_first = result.path == nullptr;
+    if (!take_new_paths(search)) continue;
+    if (is_first) limit = used + kRoundSamples + kCompany * (used + kRoundSamples);
+    if (search.num_agreeing >= 2) break;
+  }
+  return conclude(search, i_rung);
+}
+
+template <class Robot>
+void Sampler<Robot>::reset_streams(const Search& search, int i_batch, int i_rung) SOPT_RT {
+  const SamplerProblem<Robot>& problem = *search.problem;
+  const StreamProblem<Robot> stream_problem{problem.robot, problem.world, *search.profile,
                                             problem.start, problem.goal,  problem.options->sampler};
   auto reset_stream = [&](int /*i_worker*/, int i) {
     streams_[static_cast<std::size_t>(i)].reset(
@@ -62,95 +83,96 @@ SamplerStatus Sampler<Robot>::search_rung(const SamplerProblem<Robot>& problem, 
         CounterRng(problem.seed, static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(i_batch),
                    static_cast<std::uint64_t>(i_rung)));
   };
-  auto run_stream = [&](int /*i_worker*/, int i) {
-    streams_[static_cast<std::size_t>(i)].run(kRoundSamples, deadline);
-  };
+  const std::int64_t begin_ns = clock_.now_ns();
   executor_->run(Task(reset_stream), num_streams_);
-
-  const auto active = std::span(streams_).first(static_cast<std::size_t>(num_streams_));
-  const int share = static_cast<int>(kRungShare[rung] * problem.options->num_samples);
-  const auto has_path = [](const auto& stream) { return stream.has_path(); };
-  const auto is_done = [](const auto& stream) { return stream.has_path() || stream.exhausted(); };
-  bool found = false;
-  // Once there is a path the others may use as many samples again as the first one did.
-  for (int used = 0, limit = share; used < limit && !deadline.expired(); used += kRoundSamples) {
-    if (std::all_of(active.begin(), active.end(), is_done)) break;
-    executor_->run(Task(run_stream), num_streams_);
-    ++result.counts.rounds;
-    if (!found && std::any_of(active.begin(), active.end(), has_path)) {
-      found = true;
-      limit = used + kRoundSamples + static_cast<int>(kCompanyShare * (used + kRoundSamples));
-    }
-  }
-  result.counts.nodes = 0;
-  for (const auto& stream : active) {
-    result.counts.nodes += stream.num_nodes();
-    result.counts.edges += stream.num_checks();
-  }
-  result.sample_ns += clock_.now_ns() - begin_ns;
-  if (found) {
-    result.i_rung = i_rung;
-    shorten_paths(problem, profile, deadline, result);
-    return SamplerStatus::kOk;
-  }
-  if (deadline.expired()) return SamplerStatus::kDeadline;
-  const bool overflow = std::any_of(active.begin(), active.end(),
-                                    [](const auto& stream) { return stream.path_overflow(); });
-  return overflow ? SamplerStatus::kCapacity : SamplerStatus::kNoPath;
+  search.result->sample_ns += clock_.now_ns() - begin_ns;
+  raw_length_.fill(0.0);
+  graph_.clear();
 }
 
-// Shortens every path found and picks the winner.
+// Shortens the paths that the last round found and brings them in; false when there were none.
 template <class Robot>
-void Sampler<Robot>::shorten_paths(const SamplerProblem<Robot>& problem,
-                                   const MarginProfile& profile, const Deadline& deadline,
-                                   SamplerResult<Robot>& result) SOPT_RT {
+bool Sampler<Robot>::take_new_paths(Search& search) SOPT_RT {
   const std::int64_t begin_ns = clock_.now_ns();
+  std::array<bool, kMaxStreams> is_new{};
+  for (std::size_t i = 0; i < active_streams().size(); ++i) {
+    is_new[i] = streams_[i].has_path() && raw_length_[i] == 0.0;
+  }
+  if (std::none_of(is_new.begin(), is_new.end(), [](bool b) { return b; })) return false;
   auto shorten = [&](int /*i_worker*/, int i_stream) {
     const auto i = static_cast<std::size_t>(i_stream);
-    Path<Robot>& path = streams_[i].path();
-    shortcut_checks_[i] = 0;
-    if (path.vertices.empty()) return;
-    raw_length_[i] = path.length();
-    if (!problem.options->shortcut) return;
-    MotionChecker<Robot> checker(*problem.robot, *problem.world, profile);
-    CounterRng rng(problem.seed, static_cast<std::uint64_t>(i_stream), kShortcutKey);
-    shortcut_path(checker, rng, deadline, path);
-    shortcut_checks_[i] = checker.num_checks();
+    if (is_new[i]) shorten_path(search, i_stream);
   };
   executor_->run(Task(shorten), num_streams_);
 
-  double best_length = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(num_streams_); ++i) {
-    result.counts.edges += shortcut_checks_[i];
+  SamplerResult<Robot>& result = *search.result;
+  for (std::size_t i = 0; i < active_streams().size(); ++i) {
+    if (!is_new[i]) continue;
     const Path<Robot>& path = streams_[i].path();
-    if (path.vertices.empty()) continue;
+    result.counts.edges += shortcut_checks_[i];
+    graph_.add(path);
     const double length = path.length();
-    if (length >= best_length) continue;
-    best_length = length;
+    if (length < search.best_length * (1.0 - kAgreement)) search.num_agreeing = 0;
+    if (length <= search.best_length * (1.0 + kAgreement)) ++search.num_agreeing;
+    if (length >= search.best_length) continue;
+    search.best_length = length;
     result.path = &path;
     result.raw_length = raw_length_[i];
   }
-  if (problem.options->shortcut) combine_paths(problem, profile, deadline, result);
+  if (search.problem->options->shortcut) combine_paths(search);
   result.shortcut_ns += clock_.now_ns() - begin_ns;
+  return true;
 }
 
 template <class Robot>
-void Sampler<Robot>::combine_paths(const SamplerProblem<Robot>& problem,
-                                   const MarginProfile& profile, const Deadline& deadline,
-                                   SamplerResult<Robot>& result) SOPT_RT {
+void Sampler<Robot>::shorten_path(const Search& search, int i_stream) SOPT_RT {
+  const auto i = static_cast<std::size_t>(i_stream);
+  const SamplerProblem<Robot>& problem = *search.problem;
+  Path<Robot>& path = streams_[i].path();
+  raw_length_[i] = std::max(path.length(), std::numeric_limits<double>::min());  // 0: not taken yet
+  shortcut_checks_[i] = 0;
+  if (!problem.options->shortcut) return;
+  MotionChecker<Robot> checker(*problem.robot, *problem.world, *search.profile);
+  CounterRng rng(problem.seed, static_cast<std::uint64_t>(i_stream), kShortcutKey);
+  shortcut_path(checker, rng, *search.deadline, path);
+  shortcut_checks_[i] = checker.num_checks();
+}
+
+// A path that beats the best one by more than the agreement puts the count back: the streams had
+// agreed on something worse.
+template <class Robot>
+void Sampler<Robot>::combine_paths(Search& search) SOPT_RT {
+  const SamplerProblem<Robot>& problem = *search.problem;
+  SamplerResult<Robot>& result = *search.result;
   if (result.path->vertices.size() == 2) return;  // straight: nothing is shorter
-  graph_.clear();
-  for (int i = 0; i < num_streams_; ++i) {
-    const Path<Robot>& path = streams_[static_cast<std::size_t>(i)].path();
-    if (!path.vertices.empty()) graph_.add(path);
-  }
-  MotionChecker<Robot> checker(*problem.robot, *problem.world, profile);
-  if (graph_.find_shorter(checker, deadline, result.path->length(), combined_)) {
+  MotionChecker<Robot> checker(*problem.robot, *problem.world, *search.profile);
+  if (graph_.find_shorter(checker, *search.deadline, search.best_length, combined_)) {
     CounterRng rng(problem.seed, static_cast<std::uint64_t>(kMaxStreams), kShortcutKey);
-    shortcut_path(checker, rng, deadline, combined_);
+    shortcut_path(checker, rng, *search.deadline, combined_);
+    const double length = combined_.length();
+    if (length < search.best_length * (1.0 - kAgreement)) search.num_agreeing = 1;
+    search.best_length = length;
     result.path = &combined_;
   }
   result.counts.edges += checker.num_checks();
+}
+
+template <class Robot>
+SamplerStatus Sampler<Robot>::conclude(const Search& search, int i_rung) SOPT_RT {
+  SamplerResult<Robot>& result = *search.result;
+  bool path_overflow = false;
+  result.counts.nodes = 0;
+  for (const SamplerStream<Robot>& stream : active_streams()) {
+    result.counts.nodes += stream.num_nodes();
+    result.counts.edges += stream.num_checks();
+    path_overflow = path_overflow || stream.path_overflow();
+  }
+  if (result.path != nullptr) {
+    result.i_rung = i_rung;
+    return SamplerStatus::kOk;
+  }
+  if (search.deadline->expired()) return SamplerStatus::kDeadline;
+  return path_overflow ? SamplerStatus::kCapacity : SamplerStatus::kNoPath;
 }
 
 template class Sampler<Point2>;

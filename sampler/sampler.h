@@ -1,14 +1,17 @@
 // Request -> path: the parallel RRT* of [Leu22, III-A] as independent streams in rounds of a fixed
-// number of samples, on however many workers there are. After a round with at least one path every
-// path found is shortened, and the shortest wins, ties by stream id: the answer depends on the
+// number of samples, on however many workers there are. Paths are shortened when they appear and
+// combined (sampler/path_graph.h); the shortest wins, ties by stream id: the answer depends on the
 // request alone. Without a path the next round follows; a rung of the margin ladder that used its
 // share of samples gives way to the next rung, a batch to the next batch, up to the budget.
-// Deviation: the winner is chosen after shortcutting, not before; the raw length of a first path
-// says little about its homotopy (docs/RESULTS.md).
+// Deviation: the paper takes the shortest of the first paths. Raw lengths say little about the
+// homotopy, so they are compared after shortening; and streams without a path go on until two paths
+// agree in length or three times the samples of the first path are used (docs/RESULTS.md).
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <limits>
+#include <span>
 
 #include "models/config.h"
 #include "models/trajectory.h"
@@ -80,10 +83,24 @@ class Sampler {
   [[nodiscard]] SamplerStatus search_rung(const SamplerProblem<Robot>& problem, int i_batch,
                                           int i_rung, const Deadline& deadline,
                                           SamplerResult<Robot>& result) SOPT_RT;
-  void shorten_paths(const SamplerProblem<Robot>& problem, const MarginProfile& profile,
-                     const Deadline& deadline, SamplerResult<Robot>& result) SOPT_RT;
-  void combine_paths(const SamplerProblem<Robot>& problem, const MarginProfile& profile,
-                     const Deadline& deadline, SamplerResult<Robot>& result) SOPT_RT;
+  // One rung of one batch.
+  struct Search {
+    const SamplerProblem<Robot>* problem;
+    const MarginProfile* profile;
+    const Deadline* deadline;
+    SamplerResult<Robot>* result;
+    double best_length = std::numeric_limits<double>::infinity();
+    int num_agreeing = 0;  // paths about as short as the best
+  };
+
+  [[nodiscard]] std::span<const SamplerStream<Robot>> active_streams() const SOPT_RT {
+    return std::span(streams_).first(static_cast<std::size_t>(num_streams_));
+  }
+  void reset_streams(const Search& search, int i_batch, int i_rung) SOPT_RT;
+  [[nodiscard]] bool take_new_paths(Search& search) SOPT_RT;
+  void shorten_path(const Search& search, int i_stream) SOPT_RT;
+  void combine_paths(Search& search) SOPT_RT;
+  [[nodiscard]] SamplerStatus conclude(const Search& search, int i_rung) SOPT_RT;
 
   int max_streams_ = 0;
   int num_streams_ = 0;

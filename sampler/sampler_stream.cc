@@ -77,7 +77,8 @@ auto SamplerStream<Robot>::steer(const Config& from, const Config& to) const SOP
 template <class Robot>
 double SamplerStream<Robot>::rewire_radius(int num_nodes) const SOPT_RT {
   const double n = num_nodes + 1.0;
-  return std::min(range_, radius_scale_ * std::pow(std::log(n) / n, 1.0 / Robot::kDof));
+  return std::min(range_,
+                  kRadiusShare * radius_scale_ * std::pow(std::log(n) / n, 1.0 / Robot::kDof));
 }
 
 template <class Robot>
@@ -88,32 +89,31 @@ bool SamplerStream<Robot>::motion_is_clear(Checker& checker, std::size_t i_tree,
   return checker.is_clear(trees_[i_tree].config(from), from_end, to, to_end);
 }
 
+// The nearest node has to see the new one; a neighbour that sees it too and is cheaper becomes the
+// parent.
 template <class Robot>
 int SamplerStream<Robot>::extend(Checker& checker, std::size_t i_tree,
                                  const Config& target) SOPT_RT {
   Tree<Robot>& tree = trees_[i_tree];
-  const double radius = rewire_radius(tree.size());
-  tree.find_near(target, radius, near_);
+  tree.find_near(target, 0.0, near_);
   const int nearest = near_.nearest;
   const Config from = tree.config(nearest);
   const Config reached = steer(from, target);
-  for (double share = 1.0; share >= kShortestExtension; share *= kExtensionShrink) {
+  for (const double share : kExtensionShares) {
     const Config q = share == 1.0 ? reached : Robot::interpolate(from, reached, share);
-    if (q != target) tree.find_near(q, radius, near_);
-    const int node = add_with_best_parent(checker, i_tree, nearest, q);
-    if (node == kNoNode) continue;
-    rewire_neighbors(checker, i_tree, node);
+    if (!motion_is_clear(checker, i_tree, nearest, q, RequestEnd::kNone)) continue;
+    tree.find_near(q, rewire_radius(tree.size()), near_);
+    const int node = tree.try_add(q, best_parent(checker, i_tree, nearest, q));
+    if (node != kNoNode) rewire_neighbors(checker, i_tree, node);
     return node;
   }
   return kNoNode;
 }
 
-// The nearest node has to see `q`; a neighbour that sees it too and is cheaper becomes the parent.
 template <class Robot>
-int SamplerStream<Robot>::add_with_best_parent(Checker& checker, std::size_t i_tree, int nearest,
-                                               const Config& q) SOPT_RT {
-  Tree<Robot>& tree = trees_[i_tree];
-  if (!motion_is_clear(checker, i_tree, nearest, q, RequestEnd::kNone)) return kNoNode;
+int SamplerStream<Robot>::best_parent(Checker& checker, std::size_t i_tree, int nearest,
+                                      const Config& q) SOPT_RT {
+  const Tree<Robot>& tree = trees_[i_tree];
   const auto cost_through = [&](int node) {
     return tree.cost(node) + Robot::path_distance(tree.config(node), q);
   };
@@ -126,12 +126,10 @@ int SamplerStream<Robot>::add_with_best_parent(Checker& checker, std::size_t i_t
     auto* const best = std::min_element(cost.begin(), cost.begin() + near_.count);
     if (*best >= cost_limit) break;
     const int candidate = near_.index[static_cast<std::size_t>(best - cost.begin())];
-    if (motion_is_clear(checker, i_tree, candidate, q, RequestEnd::kNone)) {
-      return tree.try_add(q, candidate);
-    }
+    if (motion_is_clear(checker, i_tree, candidate, q, RequestEnd::kNone)) return candidate;
     *best = std::numeric_limits<double>::infinity();
   }
-  return tree.try_add(q, nearest);
+  return nearest;
 }
 
 template <class Robot>

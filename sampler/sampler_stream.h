@@ -3,7 +3,8 @@
 // first path is already improved. Modes: one tree from the start with direct attempts at the goal,
 // or a tree from each end that grow towards each other [Kuffner, LaValle 2000] with the same
 // rewiring. Every motion is checked exactly, edge by edge.
-// Bounded: one extension makes at most 2 scans per tree and kMaxParentTries + kMaxNeighbors checks.
+// Bounded: one sample makes at most 3 scans and, for checks, 2 + kMaxParentTries + kMaxNeighbors to
+// extend and 2 kMaxConnectSteps to connect.
 #pragma once
 
 #include <array>
@@ -70,10 +71,12 @@ class SamplerStream {
   static constexpr int kMaxConnectSteps = 64;
   // Longest motion of one extension, as a share of the sampling box's diagonal.
   static constexpr double kRangeShare = 0.2;
-  // A blocked extension is tried again at these shares of its length: in rooms with narrow doors
-  // long motions are nearly always blocked.
-  static constexpr double kExtensionShrink = 0.25;
-  static constexpr double kShortestExtension = 0.05;
+  // Shares of its length at which an extension is tried: among narrow doors long motions are nearly
+  // always blocked.
+  static constexpr std::array<double, 2> kExtensionShares = {1.0, 0.25};
+  // Of the radius that asymptotic optimality asks for: shortening the paths is cheaper than
+  // rewiring (docs/RESULTS.md).
+  static constexpr double kRadiusShare = 0.5;
   // A new parent must be this much better, relative: rounding can never build a cycle.
   static constexpr double kRewireGain = 1e-9;
 
@@ -81,8 +84,8 @@ class SamplerStream {
 
   [[nodiscard]] Config sample() SOPT_RT;
   [[nodiscard]] int extend(Checker& checker, std::size_t i_tree, const Config& target) SOPT_RT;
-  [[nodiscard]] int add_with_best_parent(Checker& checker, std::size_t i_tree, int nearest,
-                                         const Config& q) SOPT_RT;
+  [[nodiscard]] int best_parent(Checker& checker, std::size_t i_tree, int nearest,
+                                const Config& q) SOPT_RT;
   void rewire_neighbors(Checker& checker, std::size_t i_tree, int node) SOPT_RT;
   void try_goal(Checker& checker, int node) SOPT_RT;
   void try_connect(Checker& checker, std::size_t i_tree, int node) SOPT_RT;

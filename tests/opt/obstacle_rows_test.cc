@@ -55,8 +55,8 @@ class ObstacleRowsTest : public ::testing::Test {
     }
     return best_m;
   }
-  // Moves interior waypoints at random by at most trust_m, then back towards the reference until all
-  // rows hold: often right up to a row.
+  // Moves interior waypoints at random by at most trust_m, then back towards the reference until
+  // all rows hold: often right up to a row.
   Points perturb(Random& random, const Points& reference, double trust_m) {
     Points target = reference;
     for (std::size_t i = 1; i + 1 < target.size(); ++i) {
@@ -138,8 +138,7 @@ TEST_F(ObstacleRowsTest, KeepWholeEdgesClearWithinTheTrustRadius) {
     robot_.radius_m = random.chance(0.3) ? 0.0 : random.uniform(0.0, 0.3);
     profile_.rule.margin_m = random.uniform(0.0, 0.2);
     const Points way = oracle::random_polyline(random, kInner, 3);
-    Scene scene = oracle::random_scene_around(random, kBounds, way, 80, 0.6,
-                                              robot_.radius_m + 0.2);
+    Scene scene = oracle::random_scene_around(random, kBounds, way, 80, 0.6, robot_.radius_m + 0.2);
     for (auto& obstacle : scene.obstacles) {
       if (random.chance(0.2)) obstacle.margin_m = random.uniform(0.0, 0.2);
     }

@@ -52,9 +52,8 @@ class SegmentedOptimizerTest : public ::testing::Test {
   Run optimize(SegmentedOptimizer<Point2>& optimizer, const Deadline& deadline = Deadline()) {
     TestTrajectory test(reference_);
     Run run;
-    run.result =
-        optimizer.optimize({&robot_, &test_.world, profile_, kStep_m, &options_}, test.trajectory,
-                           deadline);
+    run.result = optimizer.optimize({&robot_, &test_.world, profile_, kStep_m, &options_},
+                                    test.trajectory, deadline);
     run.states = oracle::copy_of(test.trajectory.states.span());
     run.history = {run.result.history.begin(), run.result.history.end()};
     run.splits = {run.result.splits.begin(), run.result.splits.end()};
@@ -207,8 +206,8 @@ TEST_F(SegmentedOptimizerTest, KeepsWindowsWithinTheCap) {
       options_.num_segments = num_segments;
       options_.max_window = max_window;
       const Run run = optimize();
-      const int cap = max_window == 0 ? settings_.max_window
-                                      : std::min(max_window, settings_.max_window);
+      const int cap =
+          max_window == 0 ? settings_.max_window : std::min(max_window, settings_.max_window);
       for (std::size_t i = 2; i < run.splits.size(); ++i) {
         EXPECT_LE(run.splits[i] - run.splits[i - 2], cap) << num_segments << " " << max_window;
       }
@@ -300,8 +299,8 @@ TEST_F(SegmentedOptimizerTest, SaysWhenTheClockCutAnySweep) {
             optimize(Deadline(clock.clock(), 0, 1e-6 * static_cast<double>(polls) + 0.5e-6));
         if (oracle::same_bytes(run.states, free.states)) continue;
         ASSERT_EQ(run.result.status, OptimizerStatus::kDeadline)
-            << "seed " << seed << ", limit " << max_iterations << ", cut after " << polls
-            << " of " << free_clock.num_reads() << " polls";
+            << "seed " << seed << ", limit " << max_iterations << ", cut after " << polls << " of "
+            << free_clock.num_reads() << " polls";
       }
     }
   }
@@ -325,8 +324,8 @@ TEST_F(SegmentedOptimizerTest, TouchesNoHeap) {
   use_random(8);
   TestTrajectory test(reference_);
   RtGuard guard;
-  const auto result = optimizer_->optimize(
-      {&robot_, &test_.world, profile_, kStep_m, &options_}, test.trajectory, Deadline());
+  const auto result = optimizer_->optimize({&robot_, &test_.world, profile_, kStep_m, &options_},
+                                           test.trajectory, Deadline());
   guard.stop();
   EXPECT_GT(result.iterations, 0);
   EXPECT_EQ(guard.num_allocations() + guard.num_releases() + guard.num_locks(), 0);

@@ -57,8 +57,8 @@ TEST(ScaleTime, LengthensItWhenTheSpeedLimitAsksForIt) {
 TEST(ScaleTime, FollowsItsFormulaAndKeepsTheSpeedLimit) {
   Random random(1);
   for (int round = 0; round < 500; ++round) {
-    const auto states = oracle::random_polyline(
-        random, {Vec2::Constant(-5.0), Vec2::Constant(5.0)}, 2 + random.index(50));
+    const auto states = oracle::random_polyline(random, {Vec2::Constant(-5.0), Vec2::Constant(5.0)},
+                                                2 + random.index(50));
     const double dt_s = random.uniform(0.01, 1.0);
     TestTrajectory test(states, dt_s);
     const double length_m = oracle::length_of(states);
@@ -66,8 +66,8 @@ TEST(ScaleTime, FollowsItsFormulaAndKeepsTheSpeedLimit) {
     const double v_max_mps = random.uniform(0.1, 100.0);
     const Point2 robot = {0.0, v_max_mps};
     scale_and_fill(robot, reference_m, test.trajectory);
-    const double expected_s = std::max(dt_s * length_m / reference_m,
-                                       longest_step_m(test.trajectory) / v_max_mps);
+    const double expected_s =
+        std::max(dt_s * length_m / reference_m, longest_step_m(test.trajectory) / v_max_mps);
     EXPECT_NEAR(test.trajectory.dt_s, expected_s, 1e-11 * expected_s);
     EXPECT_TRUE(oracle::same_bytes(test.trajectory.states.span(), states));
     expect_exact_inputs(test.trajectory);
@@ -94,9 +94,9 @@ TEST(FillInputs, GivesTheInputsOfTheStates) {
 TEST(FillInputs, ReproducesRandomStates) {
   Random random(2);
   for (int round = 0; round < 200; ++round) {
-    TestTrajectory test(oracle::random_polyline(
-                            random, {Vec2::Constant(-5.0), Vec2::Constant(5.0)}, 60),
-                        random.uniform(0.01, 1.0));
+    TestTrajectory test(
+        oracle::random_polyline(random, {Vec2::Constant(-5.0), Vec2::Constant(5.0)}, 60),
+        random.uniform(0.01, 1.0));
     test.trajectory.inputs.clear();
     ASSERT_TRUE(fill_inputs(test.trajectory));
     expect_exact_inputs(test.trajectory);

@@ -39,9 +39,8 @@ class WindowOptimizerTest : public ::testing::Test {
   }
   // Cost over the window alone.
   double cost(const Points& states, const Window& window) const {
-    return oracle::cost_of({states.data() + window.first,
-                            static_cast<std::size_t>(window.num_steps()) + 1},
-                           ds_m_);
+    return oracle::cost_of(
+        {states.data() + window.first, static_cast<std::size_t>(window.num_steps()) + 1}, ds_m_);
   }
   // A zigzag over a box that the straight line would cross.
   void use_box_below_zigzag() {
@@ -141,9 +140,8 @@ TEST_F(WindowOptimizerTest, NeverRaisesTheCostAndKeepsTheClearance) {
       EXPECT_LE(displacement_m, trust_m_ * (1.0 + 1e-9));
       const double slack_m =
           SceneOracle(scene_).trajectory_slack(states, robot_.radius_m, profile_);
-      ASSERT_GE(slack_m, -kTol_m)
-          << oracle::to_text(scene_) << oracle::to_text(before) << window.first << ".."
-          << window.last << " trust " << trust_m_;
+      ASSERT_GE(slack_m, -kTol_m) << oracle::to_text(scene_) << oracle::to_text(before)
+                                  << window.first << ".." << window.last << " trust " << trust_m_;
       gained += result.cost_before - result.cost_after;
     }
   }
@@ -185,9 +183,9 @@ TEST_F(WindowOptimizerTest, LeavesTheWindowAloneWhenTheDeadlineCutsTheQp) {
         optimize(states, whole_, Deadline(clock.clock(), 0, 1e-6 * polls + 0.5e-6));
     if (result.status == WindowStatus::kMoved) break;
     EXPECT_EQ(states, zigzag_);
-    EXPECT_TRUE(result.status == WindowStatus::kNotRun ||
-                (result.status == WindowStatus::kQpFailed &&
-                 result.qp_status == QpStatus::kDeadline));
+    EXPECT_TRUE(
+        result.status == WindowStatus::kNotRun ||
+        (result.status == WindowStatus::kQpFailed && result.qp_status == QpStatus::kDeadline));
   }
 }
 

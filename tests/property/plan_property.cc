@@ -1,7 +1,7 @@
 // Whole plans in random worlds: 0..40 obstacles, robots of several sizes, some ends within the
-// margin. A plan must be accepted by brute force from the raw shapes and keep the margin it reports;
-// without a plan there must be a reason, and no wide way through the world. The same bytes on every
-// run and for any order of work; a plan for every number of segments.
+// margin. A plan must be accepted by brute force from the raw shapes and keep the margin it
+// reports; without a plan there must be a reason, and no wide way through the world. The same bytes
+// on every run and for any order of work; a plan for every number of segments.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -175,11 +175,11 @@ void check_report(const Case& c, const PlanResult<Point2>& result, CaseReport& r
     return;
   }
   for (std::size_t i = 1; i < result.history.size(); ++i) {
-    report.expect_within("cost rises by",
-                         result.history[i].cost / result.history[i - 1].cost - 1.0, 1e-12);
+    report.expect_within("cost rises by", result.history[i].cost / result.history[i - 1].cost - 1.0,
+                         1e-12);
   }
-  report.expect_within("cost of the plan",
-                       std::abs(result.cost - result.history.back().cost), 1e-9);
+  report.expect_within("cost of the plan", std::abs(result.cost - result.history.back().cost),
+                       1e-9);
   report.expect_within("length of the reference",
                        std::abs(result.history.front().path_length - result.path->length()), 1e-9);
   report.expect("iterations within the limit",
@@ -233,15 +233,14 @@ void check_repeats(Fixture& f, Case& c, const PlanResult<Point2>& first, CaseRep
   }
 }
 
-void check_segment_counts(Fixture& f, const Case& c, const SceneOracle& dense,
-                          CaseReport& report) {
+void check_segment_counts(Fixture& f, const Case& c, const SceneOracle& dense, CaseReport& report) {
   for (const int num_segments : {1, 2, 3, 5, 9}) {
     PlanRequest<Point2> request = c.request;
     request.options.num_segments = num_segments;
     const auto result = f.planners[static_cast<std::size_t>(c.i_radius)]->plan(request);
     if (result.status != PlanStatus::kOk) {
-      report.fail("no plan with " + std::to_string(num_segments) + " segments: " +
-                  result.failure.reason);
+      report.fail("no plan with " + std::to_string(num_segments) +
+                  " segments: " + result.failure.reason);
       continue;
     }
     check_motion(c, dense, result, report);

@@ -43,8 +43,8 @@ void check_windows(Fixture& f, const SplitsModel& model, CaseReport& report) {
   for (const Parity parity : kParities) {
     const std::vector<Window> listed = list(f, parity);
     const std::vector<Window> expected = model.windows(parity);
-    report.expect("windows follow from W", std::equal(listed.begin(), listed.end(),
-                                                      expected.begin(), expected.end(), same));
+    report.expect("windows follow from W",
+                  std::equal(listed.begin(), listed.end(), expected.begin(), expected.end(), same));
     int covered = 0;
     for (const Window& window : listed) {
       report.expect("windows cover without overlap", window.first == covered);

@@ -56,9 +56,7 @@ double brute_force_length(const Points& points, const SceneOracle& dense, double
 
 class PathGraphTest : public ::testing::Test {
  protected:
-  void use(const Scene& scene) {
-    ASSERT_EQ(oracle::fill(scene, test_.world), WorldStatus::kOk);
-  }
+  void use(const Scene& scene) { ASSERT_EQ(oracle::fill(scene, test_.world), WorldStatus::kOk); }
   bool find(double limit, Path<Point2>& out, const Deadline& deadline = Deadline()) {
     MotionChecker<Point2> checker(robot_, test_.world, profile_);
     return graph_->find_shorter(checker, deadline, limit, out);

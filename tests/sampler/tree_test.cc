@@ -14,8 +14,6 @@ namespace {
 using oracle::InArena;
 using oracle::Random;
 
-
-
 const Aabb2 kBox = {Vec2::Zero(), Vec2::Constant(10.0)};
 
 // Nodes at random places, each below a random earlier one.
@@ -165,11 +163,11 @@ TEST(Tree, ListsNoNeighboursWithoutARadius) {
 TEST(Tree, LowersTheCostsOfAllDescendantsWhenRewired) {
   InArena<Tree<Point2>> tree(8);
   tree->reset(Vec2::Zero());
-  (void)tree->try_add({0.0, 5.0}, 0);   // 1: detour
-  (void)tree->try_add({3.0, 0.0}, 1);   // 2
-  (void)tree->try_add({4.0, 0.0}, 2);   // 3
-  (void)tree->try_add({3.0, 1.0}, 2);   // 4
-  (void)tree->try_add({5.0, 0.0}, 3);   // 5
+  (void)tree->try_add({0.0, 5.0}, 0);  // 1: detour
+  (void)tree->try_add({3.0, 0.0}, 1);  // 2
+  (void)tree->try_add({4.0, 0.0}, 2);  // 3
+  (void)tree->try_add({3.0, 1.0}, 2);  // 4
+  (void)tree->try_add({5.0, 0.0}, 3);  // 5
   tree->rewire(2, 0);
   EXPECT_EQ(tree->parent(2), 0);
   EXPECT_DOUBLE_EQ(tree->cost(2), 3.0);

@@ -10,6 +10,8 @@ namespace {
 
 using Index = Eigen::Index;
 
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
 }  // namespace
 
 Eigen::MatrixXd SegmentQp::hessian() const {
@@ -110,13 +112,15 @@ Certificate2 infeasibility_certificate(const SegmentQp& qp, int row,
   for (const int i : others) {
     for (const int k : others) {
       if (at(i).t != at(row).t || at(k).t != at(row).t) continue;
-      Eigen::Matrix2d columns;
-      columns << at(i).normal, at(k).normal;
-      if (i == k) columns.col(1).setZero();
-      const Vec2 share = columns.completeOrthogonalDecomposition().solve(wanted).cwiseMax(0.0);
-      const double residual = (columns * share - wanted).norm();
+      const Vec2& a = at(i).normal;
+      const Vec2& b = at(k).normal;
+      const double det = cross(a, b);
+      const bool is_single = std::abs(det) < 1e-12;
+      const double share_a = std::max(0.0, is_single ? a.dot(wanted) : cross(wanted, b) / det);
+      const double share_b = std::max(0.0, is_single ? 0.0 : cross(a, wanted) / det);
+      const double residual = (share_a * a + share_b * b - wanted).norm();
       if (residual >= best.residual) continue;
-      best = {residual, at(row).bound + share[0] * at(i).bound + share[1] * at(k).bound};
+      best = {residual, at(row).bound + share_a * at(i).bound + share_b * at(k).bound};
     }
   }
   return best;
