@@ -26,7 +26,7 @@ struct PlannerSettings {
   int nodes_per_stream = 20000;  // both trees of a stream together, >= 4
   int max_path_vertices = 1024;  // of a sampled path, >= 4
   int max_window = 60;           // steps of one optimisation window, >= 4
-  int rows_per_window = 512;     // obstacle rows of one window's QP, >= 0
+  int rows_per_window = 512;     // obstacle rows of one window's QP, at least; >= 0
 
   [[nodiscard]] constexpr bool is_valid() const noexcept {
     return max_horizon >= 2 && num_streams >= 1 && num_streams <= kMaxStreams &&

@@ -1,5 +1,6 @@
 // Four doubles or eight floats at a time through the compilers' vector extension: the same source
 // becomes AVX on x86-64-v3 and pairs of NEON registers on ARM. Loads take any element alignment.
+// Always inlined: no copy compiled with other CPU flags can take their place at link time.
 #pragma once
 
 #include <cstdint>
@@ -19,26 +20,26 @@ using V8i = std::int32_t __attribute__((vector_size(32)));
 inline constexpr int kLanesDouble = 4;
 inline constexpr int kLanesFloat = 8;
 
-inline V4d load4(const double* from) noexcept {
+[[gnu::always_inline]] inline V4d load4(const double* from) noexcept {
   V4d v;
   std::memcpy(&v, from, sizeof v);
   return v;
 }
-inline V8f load8(const float* from) noexcept {
+[[gnu::always_inline]] inline V8f load8(const float* from) noexcept {
   V8f v;
   std::memcpy(&v, from, sizeof v);
   return v;
 }
-inline V4d splat4(double s) noexcept { return V4d{s, s, s, s}; }
-inline V8f splat8(float s) noexcept { return V8f{s, s, s, s, s, s, s, s}; }
+[[gnu::always_inline]] inline V4d splat4(double s) noexcept { return V4d{s, s, s, s}; }
+[[gnu::always_inline]] inline V8f splat8(float s) noexcept { return V8f{s, s, s, s, s, s, s, s}; }
 
-inline V4d abs4(V4d v) noexcept { return v < 0.0 ? -v : v; }
-inline V4d min4(V4d a, V4d b) noexcept { return a < b ? a : b; }
-inline V4d max4(V4d a, V4d b) noexcept { return a > b ? a : b; }
+[[gnu::always_inline]] inline V4d abs4(V4d v) noexcept { return v < 0.0 ? -v : v; }
+[[gnu::always_inline]] inline V4d min4(V4d a, V4d b) noexcept { return a < b ? a : b; }
+[[gnu::always_inline]] inline V4d max4(V4d a, V4d b) noexcept { return a > b ? a : b; }
 
 // Bit i is set when lane i of a comparison holds; Mask is whatever type the compiler gives to it.
 template <class Mask>
-unsigned lane_mask4(const Mask& m) noexcept {
+[[gnu::always_inline]] inline unsigned lane_mask4(const Mask& m) noexcept {
   static_assert(sizeof(Mask) == sizeof(V4d));
 #if defined(__AVX__)
   __m256d bits;
@@ -52,7 +53,7 @@ unsigned lane_mask4(const Mask& m) noexcept {
 }
 
 template <class Mask>
-unsigned lane_mask8(const Mask& m) noexcept {
+[[gnu::always_inline]] inline unsigned lane_mask8(const Mask& m) noexcept {
   static_assert(sizeof(Mask) == sizeof(V8f));
 #if defined(__AVX__)
   __m256 bits;

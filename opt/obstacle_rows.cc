@@ -11,8 +11,8 @@ namespace {
 struct EdgeRows {
   static constexpr std::size_t kCapacity = 64;
 
-  std::array<Vec2, kCapacity> normal;
-  std::array<double, kCapacity> bound;
+  std::array<Vec2, kCapacity> normal{};
+  std::array<double, kCapacity> bound{};
   std::size_t count = 0;
 
   [[nodiscard]] bool try_add(const Vec2& n, double b) noexcept {

@@ -114,8 +114,9 @@ OptimizerResult<Robot> SegmentedOptimizer<Robot>::optimize(const OptimizerProble
 }
 
 template <class Robot>
-auto SegmentedOptimizer<Robot>::sweep(const SweepProblem<Robot>& problem, const Deadline& deadline,
-                                      OptimizerCounts& counts) SOPT_RT->SweepSummary {
+SweepSummary SegmentedOptimizer<Robot>::sweep(const SweepProblem<Robot>& problem,
+                                              const Deadline& deadline,
+                                              OptimizerCounts& counts) SOPT_RT {
   (void)results_.try_resize(windows_.size());
   auto optimize_window = [&](int i_worker, int i) {
     results_[i] = workers_[i_worker].optimize(problem, windows_[i], deadline);

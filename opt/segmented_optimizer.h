@@ -70,6 +70,14 @@ struct OptimizerResult {
   std::span<const int> splits;
 };
 
+// What a sweep did, over all its windows.
+struct SweepSummary {
+  double gain = 0.0;            // of cost
+  double displacement_m = 0.0;  // largest move of a waypoint
+  bool was_shortened = false;   // a step ended at the trust radius
+  bool was_cut = false;         // the deadline kept a window from being optimised
+};
+
 template <class Robot>
 class SegmentedOptimizer {
  public:
@@ -82,14 +90,6 @@ class SegmentedOptimizer {
                                                 const Deadline& deadline) SOPT_RT;
 
  private:
-  // What a sweep did, over all its windows.
-  struct SweepSummary {
-    double gain = 0.0;            // of cost
-    double displacement_m = 0.0;  // largest move of a waypoint
-    bool was_shortened = false;   // a step ended at the trust radius
-    bool was_cut = false;         // the deadline kept a window from being optimised
-  };
-
   [[nodiscard]] SweepSummary sweep(const SweepProblem<Robot>& problem, const Deadline& deadline,
                                    OptimizerCounts& counts) SOPT_RT;
   void adapt_windows(double max_merge_gain, int max_window) SOPT_RT;

@@ -12,8 +12,8 @@
 
 namespace sopt {
 
-// Sets dt_s of `trajectory`, whose step time is that of the reference, and its inputs. A trajectory
-// that does not move keeps dt_s.
+// Sets dt_s of `trajectory`, whose step time is that of the reference; inputs are not touched. A
+// trajectory that does not move keeps dt_s.
 void scale_time(const Point2& robot, double reference_length_m,
                 Trajectory<Point2>& trajectory) SOPT_RT;
 

@@ -69,6 +69,7 @@ void PathGraph<Robot>::close(int i, int parent, double length_limit) SOPT_RT {
 template <class Robot>
 bool PathGraph<Robot>::find_shorter(MotionChecker<Robot>& checker, const Deadline& deadline,
                                     double length_limit, Path<Robot>& out) SOPT_RT {
+  if (nodes_.empty()) return false;
   queue_.clear();
   for (Node& node : nodes_) node.is_closed = false;
   nodes_[kStart].from_start = 0.0;

@@ -85,10 +85,10 @@ class Sampler {
                                           SamplerResult<Robot>& result) SOPT_RT;
   // One rung of one batch.
   struct Search {
-    const SamplerProblem<Robot>* problem;
-    const MarginProfile* profile;
-    const Deadline* deadline;
-    SamplerResult<Robot>* result;
+    const SamplerProblem<Robot>* problem = nullptr;
+    const MarginProfile* profile = nullptr;
+    const Deadline* deadline = nullptr;
+    SamplerResult<Robot>* result = nullptr;
     double best_length = std::numeric_limits<double>::infinity();
     int num_agreeing = 0;  // paths about as short as the best
   };

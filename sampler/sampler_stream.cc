@@ -60,7 +60,7 @@ void SamplerStream<Robot>::run(int num_samples, const Deadline& deadline) SOPT_R
 }
 
 template <class Robot>
-auto SamplerStream<Robot>::sample() SOPT_RT->Config {
+typename Robot::Config SamplerStream<Robot>::sample() SOPT_RT {
   Config q;
   for (int dof = 0; dof < Robot::kDof; ++dof) {
     q[dof] = box_lower_[dof] + box_size_[dof] * rng_.next_uniform();
@@ -69,7 +69,8 @@ auto SamplerStream<Robot>::sample() SOPT_RT->Config {
 }
 
 template <class Robot>
-auto SamplerStream<Robot>::steer(const Config& from, const Config& to) const SOPT_RT->Config {
+typename Robot::Config SamplerStream<Robot>::steer(const Config& from,
+                                                   const Config& to) const SOPT_RT {
   const double distance = Robot::path_distance(from, to);
   return distance <= range_ ? to : Robot::interpolate(from, to, range_ / distance);
 }
@@ -204,7 +205,7 @@ int SamplerStream<Robot>::num_nodes() const SOPT_RT {
 }
 
 template <class Robot>
-auto SamplerStream<Robot>::node(int i) const SOPT_RT->const Config& {
+const typename Robot::Config& SamplerStream<Robot>::node(int i) const SOPT_RT {
   const int num_start = trees_[kStartTree].size();
   return i < num_start ? trees_[kStartTree].config(i) : trees_[kGoalTree].config(i - num_start);
 }

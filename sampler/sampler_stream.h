@@ -43,7 +43,7 @@ class SamplerStream {
   void reset(const StreamProblem<Robot>& problem, const CounterRng& rng) SOPT_RT;
 
   // Takes up to `num_samples` samples; returns early with a path, with full trees, or when the
-  // deadline expires (polled at every sample).
+  // deadline expires (polled at every sample). The first call tries the motion from start to goal.
   void run(int num_samples, const Deadline& deadline) SOPT_RT;
 
   [[nodiscard]] bool has_path() const SOPT_RT { return !path_.vertices.empty(); }
@@ -57,7 +57,8 @@ class SamplerStream {
   // A path was found but has more vertices than the settings allow.
   [[nodiscard]] bool path_overflow() const SOPT_RT { return path_overflow_; }
 
-  // All nodes of both trees, for pictures and counts; parent is -1 at a root.
+  // All nodes of both trees (with one tree, the other one is the goal alone), for pictures and
+  // counts; parent is -1 at a root.
   [[nodiscard]] int num_nodes() const SOPT_RT;
   [[nodiscard]] const Config& node(int i) const SOPT_RT;
   [[nodiscard]] int parent(int i) const SOPT_RT;

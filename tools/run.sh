@@ -9,6 +9,7 @@ if (($# > 0)) && [[ $1 != -* ]]; then
   scene=$1
   shift
 fi
+if (($# == 0)); then set -- --repeat 20; fi  # the first call of a process is cold
 [[ -r $scene ]] || fail "cannot read the scene $scene"
 
 install_missing "${packages[@]}"

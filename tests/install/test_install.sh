@@ -28,6 +28,13 @@ flags=$(PKG_CONFIG_PATH=$(dirname "$pc_file") pkg-config --cflags --libs sopt)
 "$cxx" -std=c++20 "$here/main.cc" $flags -o "$scratch/downstream_pkg_config"
 "$scratch/downstream_pkg_config"
 
+echo "--- README example"
+awk '/^```cpp$/ {inside = 1; next} /^```$/ {inside = 0} inside' "$here/../../README.md" \
+  >"$scratch/readme_example.cc"
+# shellcheck disable=SC2086
+"$cxx" -std=c++20 "$scratch/readme_example.cc" $flags -o "$scratch/readme_example"
+[[ $("$scratch/readme_example" | tail -n 1) == "19 1" ]]
+
 echo "--- program"
 "$prefix/bin/sopt" --help >/dev/null
 echo "installed tree is usable"

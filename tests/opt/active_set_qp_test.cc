@@ -34,7 +34,7 @@ class ActiveSetQpTest : public ::testing::Test {
     EXPECT_LE(residual.stationarity, 1e-9) << oracle::to_text(qp);
     EXPECT_LE(residual.violation, kTol) << oracle::to_text(qp);
     EXPECT_LE(residual.negativity, 0.0) << oracle::to_text(qp);
-    EXPECT_LE(residual.complementarity, kTol * 100) << oracle::to_text(qp);
+    EXPECT_LE(residual.complementarity, kTol * 10) << oracle::to_text(qp);
     EXPECT_FALSE(residual.has_padding);
     EXPECT_EQ(result.num_active, static_cast<int>(qp_->active_rows().size()));
   }

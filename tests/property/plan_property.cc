@@ -63,7 +63,7 @@ Case draw_case(Random& random) {
   c.i_radius = random.index(3);
   c.request.seed = static_cast<std::uint64_t>(random.index(1000));
   PlanOptions& options = c.request.options;
-  options.margin_m = random.chance(0.5) ? 0.05 : random.uniform(0.0, 0.4);
+  options.margin_m = random.chance(0.5) ? 0.05 : random.uniform(1e-4, 0.4);
   options.sampler = random.chance(0.7) ? SamplerMode::kRrtStarConnect : SamplerMode::kRrtStar;
   options.num_samples = 3000;
   options.num_batches = 1;

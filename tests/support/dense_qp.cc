@@ -99,7 +99,8 @@ KktResidual kkt_residual(const SegmentQp& qp, const PointRows& rows, const Activ
     const double multiplier = lambda[static_cast<Index>(i)];
     residual.violation = std::max(residual.violation, violation);
     residual.negativity = std::max(residual.negativity, -multiplier);
-    residual.complementarity = std::max(residual.complementarity, std::abs(multiplier * violation));
+    residual.complementarity =
+        std::max(residual.complementarity, std::min(multiplier, std::abs(violation)));
   }
   return residual;
 }
@@ -119,8 +120,10 @@ Certificate2 infeasibility_certificate(const SegmentQp& qp, int row,
       const double share_a = std::max(0.0, is_single ? a.dot(wanted) : cross(wanted, b) / det);
       const double share_b = std::max(0.0, is_single ? 0.0 : cross(a, wanted) / det);
       const double residual = (share_a * a + share_b * b - wanted).norm();
-      if (residual >= best.residual) continue;
-      best = {residual, at(row).bound + share_a * at(i).bound + share_b * at(k).bound};
+      const double gap = at(row).bound + share_a * at(i).bound + share_b * at(k).bound;
+      const bool is_exact = residual < 1e-9;
+      if (is_exact ? best.residual < 1e-9 && gap <= best.gap : residual >= best.residual) continue;
+      best = {residual, gap};
     }
   }
   return best;

@@ -48,7 +48,7 @@ struct KktResidual {
   double stationarity = 0.0;     // |H x + f - A' lambda|, largest component
   double violation = 0.0;        // largest, or 0
   double negativity = 0.0;       // of multipliers, largest
-  double complementarity = 0.0;  // largest |lambda_i| |slack_i|
+  double complementarity = 0.0;  // largest min(lambda_i, |slack_i|)
   bool has_padding = false;      // a padding row is active
 };
 [[nodiscard]] KktResidual kkt_residual(const SegmentQp& qp, const PointRows& rows,
@@ -56,7 +56,7 @@ struct KktResidual {
 
 // The nearest that `row` (an index of `qp.rows`) and others at its waypoint come to proving
 // infeasibility: minus the row's normal as a nonnegative combination of at most two of them (two
-// are enough in the plane), whose bounds then contradict it.
+// are enough in the plane), whose bounds then contradict it by the largest gap.
 struct Certificate2 {
   double residual = 0.0;  // of the combination
   double gap = 0.0;       // > 0: contradiction
