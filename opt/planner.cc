@@ -250,9 +250,9 @@ MarginLadder Planner<Robot>::make_ladder(const PlanRequest<Robot>& request,
       if (clearance_m >= wanted_m) return;
       cap_m = options.min_clearance_m +
               MarginProfile::kEndShare * (clearance_m - options.min_clearance_m);
-      const double reach_m = 2.0 * (wanted_m - clearance_m);
-      num_steps = static_cast<int>(
-          std::min(std::ceil(2.0 * reach_m / step_length), 1.0 * settings_.max_horizon));
+      // Two steps at least: a path shorter than one step still has two.
+      const double wanted_steps = std::ceil(4.0 * (wanted_m - clearance_m) / step_length);
+      num_steps = static_cast<int>(std::clamp(wanted_steps, 2.0, 1.0 * settings_.max_horizon));
     };
     relax(request.start, profile.start_cap_m, profile.num_start_steps);
     relax(request.goal, profile.goal_cap_m, profile.num_goal_steps);
