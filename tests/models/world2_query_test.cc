@@ -156,13 +156,17 @@ TEST_F(WorldQuery, KeepsTheFloorOfEveryMargin) {
 
 TEST_F(WorldQuery, SeesEveryObstacleOfAFullWorld) {
   constexpr int kSide = 8;
+  const auto center_of = [](int i) {
+    const int row = i / kSide;
+    return Vec2(0.6 + 1.2 * (i % kSide), 0.5 + 0.95 * row);
+  };
   for (int i = 0; i < kSide * kSide; ++i) {
-    const Vec2 center(0.6 + 1.2 * (i % kSide), 0.5 + 0.95 * (i / kSide));
+    const Vec2 center = center_of(i);
     ASSERT_EQ(world_.try_add(Disc{center, 0.25}), WorldStatus::kOk);
   }
   world_.build();
   for (int i = 0; i < kSide * kSide; ++i) {
-    const Vec2 center(0.6 + 1.2 * (i % kSide), 0.5 + 0.95 * (i / kSide));
+    const Vec2 center = center_of(i);
     const NearestObstacle nearest = world_.nearest(center, center, 1.0);
     EXPECT_EQ(nearest.i_obstacle, i);
     EXPECT_NEAR(nearest.distance_m, -0.25, 1e-12);
