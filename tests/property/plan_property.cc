@@ -105,7 +105,9 @@ bool has_wide_way(const Case& c, const SceneOracle& dense, double clearance_m) {
   constexpr int kSide = 50;
   constexpr double kCell_m = kExtent_m / kSide;
   const auto center = [](int i) {
-    return Vec2((i % kSide + 0.5) * kCell_m, (i / kSide + 0.5) * kCell_m);
+    const int column = i % kSide;
+    const int row = i / kSide;
+    return Vec2((column + 0.5) * kCell_m, (row + 0.5) * kCell_m);
   };
   const auto cell_of = [](const Vec2& z) {
     return static_cast<int>(z.x() / kCell_m) + kSide * static_cast<int>(z.y() / kCell_m);
