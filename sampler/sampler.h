@@ -3,9 +3,9 @@
 // combined (sampler/path_graph.h); the shortest wins, ties by stream id: the answer depends on the
 // request alone. Without a path the next round follows; a rung of the margin ladder that used its
 // share of samples gives way to the next rung, a batch to the next batch, up to the budget.
-// Deviation: the paper takes the shortest of the first paths. Raw lengths say little about the
-// homotopy, so they are compared after shortening; and streams without a path go on until two paths
-// agree in length or three times the samples of the first path are used (docs/RESULTS.md).
+// Deviation: the paper takes the shortest of the first paths as sampled. Here paths are compared by
+// what is left of them after shortening; and streams without a path go on until two paths agree in
+// length or three times the samples of the first path are used (measured: docs/RESULTS.md).
 #pragma once
 
 #include <array>
