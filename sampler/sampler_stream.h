@@ -72,11 +72,11 @@ class SamplerStream {
   static constexpr int kMaxConnectSteps = 64;
   // Longest motion of one extension, as a share of the sampling box's diagonal.
   static constexpr double kRangeShare = 0.2;
-  // Deviation: shares of its length at which an extension is tried, RRT* tries one; among narrow doors long motions are nearly
-  // always blocked.
+  // Deviation: shares of its length at which an extension is tried, RRT* tries one; among narrow
+  // doors long motions are nearly always blocked.
   static constexpr std::array<double, 2> kExtensionShares = {1.0, 0.25};
-  // Deviation: of the radius that asymptotic optimality asks for, because shortening the paths is cheaper than
-  // rewiring (docs/RESULTS.md).
+  // Deviation: of the radius that asymptotic optimality asks for, because shortening the paths is
+  // cheaper than rewiring (docs/RESULTS.md).
   static constexpr double kRadiusShare = 0.5;
   // A new parent must be this much better, relative: rounding can never build a cycle.
   static constexpr double kRewireGain = 1e-9;
