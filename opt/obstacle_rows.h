@@ -14,7 +14,7 @@
 
 #include "models/margin.h"
 #include "models/point2.h"
-#include "opt/point_rows.h"
+#include "opt/qp/point_rows.h"
 #include "opt/splits.h"
 #include "rt/annotations.h"
 

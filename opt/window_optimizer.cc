@@ -64,7 +64,9 @@ WindowResult WindowOptimizer<Point2>::optimize(const SweepProblem<Point2>& probl
       return result;
     }
   }
-  const QpResult qp = qp_.solve(rows_, QpOptions{}, deadline);
+  QpOptions<double> options;
+  options.violation_tolerance = kQpTolerance_m;
+  const QpResult<double> qp = qp_.solve(rows_, options, deadline);
   result.qp_status = qp.status;
   result.qp_solves = 1;
   result.qp_steps = qp.num_steps;
@@ -96,10 +98,9 @@ WindowStatus WindowOptimizer<Point2>::take_step(const SweepProblem<Point2>& prob
       rows_.shorten_step(reference, 0.5);
       displacement_m *= 0.5;
     }
-    const int worst = rows_.most_violated();
     const double cost = rows_cost(rows_, problem.ds_m);
     if (cost > result.cost_before) continue;
-    if (worst >= 0 && rows_.violation(worst) > kRowTolerance_m) continue;
+    if (rows_.most_violated(kRowTolerance_m) >= 0) continue;
     for (int t = 1; t < rows_.num_steps(); ++t) reference[t] = rows_.position(t);
     result.cost_after = cost;
     result.displacement_m = displacement_m;

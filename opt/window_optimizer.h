@@ -12,9 +12,9 @@
 #include "models/config.h"
 #include "models/margin.h"
 #include "models/point2.h"
-#include "opt/active_set_qp.h"
 #include "opt/obstacle_rows.h"
-#include "opt/point_rows.h"
+#include "opt/qp/active_set_qp.h"
+#include "opt/qp/point_rows.h"
 #include "opt/splits.h"
 #include "rt/annotations.h"
 #include "rt/deadline.h"
@@ -73,14 +73,15 @@ class WindowOptimizer<Point2> {
   static constexpr int kMaxTrustHalvings = 6;
   // Steps tried towards the solution: 1, 1/2, .. 1/16.
   static constexpr int kMaxStepHalvings = 4;
-  // Rows may be violated by this much after a step, m: rounding of the QP.
+  // Rows may be violated by this much in the QP, m, and after a step.
+  static constexpr double kQpTolerance_m = 1e-9;
   static constexpr double kRowTolerance_m = 2e-9;
 
   [[nodiscard]] WindowStatus take_step(const SweepProblem<Point2>& problem, const Window& window,
                                        double trust_m, WindowResult& result) SOPT_RT;
 
   PointRows rows_;
-  ActiveSetQp qp_;
+  ActiveSetQp<double> qp_;
 };
 
 }  // namespace sopt

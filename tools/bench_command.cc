@@ -6,17 +6,16 @@
 #include <vector>
 
 #include "tools/bench_plan.h"
+#include "tools/bench_qp_command.h"
 #include "tools/bench_report.h"
 #include "tools/input_error.h"
 #include "tools/json_text.h"
 #include "tools/option_checks.h"
 #include "tools/output_file.h"
+#include "tools/shipped_scenes.h"
 
 namespace sopt {
 namespace {
-
-// Where the shipped scenes are, seen from the project's root.
-constexpr const char* kShippedScenes = "tools/scenes/plane";
 
 struct BenchArguments {
   std::vector<std::string> scenes;
@@ -25,13 +24,6 @@ struct BenchArguments {
   std::string json_file;
   bool by_segments = false;
 };
-
-std::vector<std::filesystem::path> scenes_of(const BenchArguments& arguments) {
-  if (!arguments.scenes.empty()) return list_scenes(arguments.scenes);
-  if (std::filesystem::is_directory(kShippedScenes)) return list_scenes({kShippedScenes});
-  throw InputError(std::string("SCENE: none given, and there is no folder ") + kShippedScenes +
-                   " here; give scene files or a folder of them");
-}
 
 // A given number of segments needs windows of any length, or the shortest would be raised.
 constexpr int kLongestWindow = 320;
@@ -58,7 +50,7 @@ int run_by_segments(const std::vector<std::filesystem::path>& scenes,
 
 int run_bench_plan(BenchArguments arguments) {
   arguments.options.cpu_time = arguments.clock == "cpu";
-  const std::vector<std::filesystem::path> scenes = scenes_of(arguments);
+  const std::vector<std::filesystem::path> scenes = given_or_shipped_scenes(arguments.scenes);
   std::vector<std::filesystem::path> outputs;
   if (!arguments.json_file.empty()) outputs.emplace_back(arguments.json_file);
   check_outputs(outputs, scenes);
@@ -103,6 +95,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->excludes(converged);
   add_algorithm_options(*command, arguments->options.algorithm);
   command->callback([arguments, &exit_code] { exit_code = run_bench_plan(*arguments); });
+  add_bench_qp_command(*bench, exit_code);
 }
 
 }  // namespace sopt

@@ -10,6 +10,7 @@
 #include "tools/input_error.h"
 #include "tools/json_fields.h"
 #include "tools/plan_command.h"
+#include "tools/qp_command.h"
 #include "tools/verify_command.h"
 
 namespace {
@@ -30,6 +31,7 @@ int run(int argc, char** argv) {
   sopt::add_plan_command(app, exit_code);
   sopt::add_verify_command(app, exit_code);
   sopt::add_bench_command(app, exit_code);
+  sopt::add_qp_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -10,8 +10,8 @@
 #include "models/clearance2.h"
 #include "models/point2.h"
 #include "models/world2.h"
-#include "opt/active_set_qp.h"
-#include "opt/point_rows.h"
+#include "opt/qp/active_set_qp.h"
+#include "opt/qp/point_rows.h"
 #include "sampler/rng.h"
 #include "sampler/tree.h"
 
@@ -115,18 +115,18 @@ void window_qp(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
   Arena measure = Arena::measuring();
   const PointRows measured_rows(measure, n, 8 * n);
-  const ActiveSetQp measured_qp(measure, 2 * n);
+  const ActiveSetQp<double> measured_qp(measure, 2 * n);
   const MemoryBlock block(measure.used_B());
   Arena arena(block);
   PointRows rows(arena, n, 8 * n);
-  ActiveSetQp qp(arena, 2 * n);
+  ActiveSetQp<double> qp(arena, 2 * n);
   for (auto _ : state) {
     rows.reset(n, Vec2(0.0, 0.0), Vec2(n, 0.0));
     for (int t = 1; t < n; ++t) {
       const Vec2 from_center = Vec2(t - 0.5 * n, 0.25 * n).normalized();
       (void)rows.try_add(t, from_center, from_center.x() * 0.5 * n + 0.25 * n);
     }
-    benchmark::DoNotOptimize(qp.solve(rows, QpOptions{}, Deadline{}));
+    benchmark::DoNotOptimize(qp.solve(rows, {}, Deadline{}));
   }
 }
 BENCHMARK(window_qp)->Arg(15)->Arg(30)->Arg(60);

@@ -38,8 +38,11 @@ class ObstacleRowsTest : public ::testing::Test {
   // Largest violation of a row when the window's waypoints are `points`.
   double violation_at(const Points& points) {
     rows_->shorten_step(points.data(), 0.0);
-    const int row = rows_->most_violated();
-    return row < 0 ? -oracle::kFar_m : rows_->violation(row);
+    double worst = -oracle::kFar_m;
+    for (int id = 0; id < rows_->num_ids(); ++id) {
+      if (rows_->is_free(id)) worst = std::max(worst, rows_->violation(id));
+    }
+    return worst;
   }
   static Points part(const Points& states, const Window& window) {
     return {states.begin() + window.first, states.begin() + window.last + 1};
@@ -105,7 +108,7 @@ TEST_F(ObstacleRowsTest, MakesNoRowsFarFromEverything) {
   use({kBounds, {{Disc{{5.0, 1.0}, 0.5}, kDefaultMargin}}});
   const Points states = {{4.0, 5.0}, {5.0, 5.0}, {6.0, 5.0}};
   ASSERT_TRUE(make(states, {0, 2, 0, true}, 1.0));
-  EXPECT_EQ(rows_->num_rows(), 0);
+  EXPECT_EQ(rows_->num_ids(), 0);
 }
 
 TEST_F(ObstacleRowsTest, KeepsTheBoundsAsWell) {

@@ -4,6 +4,7 @@
 // it names must prove it.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,7 @@ constexpr double kPi = 3.14159265358979323846;
 
 struct Fixture {
   InArena<PointRows> rows{60, 512};
-  InArena<ActiveSetQp> solver{128};
+  InArena<ActiveSetQp<double>> solver{128};
 };
 
 // Rows that make life hard without cutting off the point that all rows hold at.
@@ -56,37 +57,25 @@ void add_contradiction(Random& random, SegmentQp& qp) {
   sort_rows(qp);
 }
 
-// Two rows of a waypoint that are opposite but for a small angle and leave next to nothing between
-// them: feasible only far out in a needle, where rounding decides.
-bool has_needle(const SegmentQp& qp) {
-  for (std::size_t i = 0; i < qp.rows.size(); ++i) {
-    const SegmentRow& a = qp.rows[i];
-    for (std::size_t k = i + 1; k < qp.rows.size() && qp.rows[k].t == a.t; ++k) {
-      const SegmentRow& b = qp.rows[k];
-      if ((a.normal + b.normal).norm() < 3e-3 && a.bound + b.bound > -3e-3) return true;
-    }
-  }
-  return false;
-}
-
-void check_optimum(Fixture& f, const SegmentQp& qp, const QpResult& result, CaseReport& report) {
+void check_optimum(Fixture& f, const SegmentQp& qp, const QpResult<double>& result,
+                   CaseReport& report) {
   if (result.status != QpStatus::kOptimal) {
-    if (has_needle(qp)) return;
-    report.fail("misses the optimum: status " + std::to_string(static_cast<int>(result.status)));
+    char text[120];
+    std::snprintf(text, sizeof text, "misses the optimum: status %d, primal residual %.3g",
+                  static_cast<int>(result.status), result.primal_residual);
+    report.fail(text);
     return;
   }
   const KktResidual residual = kkt_residual(qp, *f.rows, *f.solver);
   report.expect_within("feasibility", residual.violation, 1.0001e-9);
-  if (has_needle(qp)) return;
   report.expect_within("stationarity", residual.stationarity, 1e-9);
   report.expect("multipliers are not negative", residual.negativity <= 0.0);
   report.expect_within("complementarity", residual.complementarity, 1e-8);
   report.expect("no padding row is active", !residual.has_padding);
 }
 
-void check_infeasible(Fixture& f, const SegmentQp& qp, const QpResult& result, CaseReport& report) {
-  // Opposite rows that rounding keeps from being dependent may end as inaccurate.
-  if (result.status == QpStatus::kInaccurate) return;
+void check_infeasible(Fixture& f, const SegmentQp& qp, const QpResult<double>& result,
+                      CaseReport& report) {
   if (result.status != QpStatus::kInfeasible) {
     report.fail("overlooks the contradiction: status " +
                 std::to_string(static_cast<int>(result.status)));
@@ -100,11 +89,6 @@ void check_infeasible(Fixture& f, const SegmentQp& qp, const QpResult& result, C
   if (blocking >= static_cast<int>(qp.rows.size())) {
     report.fail("the blocking row is no row");
     return;
-  }
-  // After nearly singular steps the working set is rounding; the refusal stands, the proof does
-  // not.
-  for (const double lambda : f.solver->multipliers()) {
-    if (!(lambda < 1e8)) return;
   }
   std::vector<int> others;
   for (const int row : f.solver->active_rows()) {
@@ -126,7 +110,7 @@ std::string check_case(Random& random, CaseReport& report) {
     report.fail("the rows do not fit");
     return to_text(qp);
   }
-  const QpResult result = f.solver->solve(*f.rows, QpOptions{}, Deadline());
+  const QpResult<double> result = f.solver->solve(*f.rows, QpOptions<double>{}, Deadline());
   if (is_feasible) {
     check_optimum(f, qp, result, report);
   } else {

@@ -77,7 +77,8 @@ std::vector<int> row_indices(const SegmentQp& qp) {
   return indices;
 }
 
-KktResidual kkt_residual(const SegmentQp& qp, const PointRows& rows, const ActiveSetQp& solver) {
+KktResidual kkt_residual(const SegmentQp& qp, const PointRows& rows,
+                         const ActiveSetQp<double>& solver) {
   KktResidual residual;
   Eigen::VectorXd x(2 * (qp.num_steps - 1));
   for (int t = 1; t < qp.num_steps; ++t) x.segment<2>(2 * (t - 1)) = rows.position(t);

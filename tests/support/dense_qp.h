@@ -1,6 +1,6 @@
-// The segment QP of opt/point_rows.h written out densely: Hessian as the second-difference matrix,
-// rows as a matrix, KKT residuals computed from them. Shares nothing with the kernel form. Also
-// random problems with known properties. For tests.
+// The segment QP of opt/qp/point_rows.h written out densely: Hessian as the second-difference
+// matrix, rows as a matrix, KKT residuals computed from them. Shares nothing with the kernel form.
+// Also random problems with known properties. For tests.
 #pragma once
 
 #include <Eigen/Dense>
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "opt/active_set_qp.h"
-#include "opt/point_rows.h"
+#include "opt/qp/active_set_qp.h"
+#include "opt/qp/point_rows.h"
 #include "tests/support/oracle2.h"
 
 namespace sopt::oracle {
@@ -41,7 +41,7 @@ struct SegmentQp {
 void sort_rows(SegmentQp& qp);
 // False when the rows do not fit.
 [[nodiscard]] bool fill(const SegmentQp& qp, PointRows& rows);
-// Index in PointRows of every row: groups of four per waypoint.
+// Id in PointRows of every row: groups of four per waypoint.
 [[nodiscard]] std::vector<int> row_indices(const SegmentQp& qp);
 
 struct KktResidual {
@@ -52,7 +52,7 @@ struct KktResidual {
   bool has_padding = false;      // a padding row is active
 };
 [[nodiscard]] KktResidual kkt_residual(const SegmentQp& qp, const PointRows& rows,
-                                       const ActiveSetQp& solver);
+                                       const ActiveSetQp<double>& solver);
 
 // The nearest that `row` (an index of `qp.rows`) and others at its waypoint come to proving
 // infeasibility: minus the row's normal as a nonnegative combination of at most two of them (two

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Dependencies between folders go one way:
-#   rt -> alloc -> models -> {sampler, opt core} -> opt/planner -> tools -> tests
+#   rt -> alloc -> models -> {sampler, opt/qp -> opt core} -> opt/planner -> tools -> tests
 # Every #include "..." names a file by its path from the project's root, and that file may be used
 # from the including file's layer. Prints each violation; exit code 1 when there is one.
 # usage: layers.sh [ROOT]
@@ -10,6 +10,7 @@ cd "$root"
 
 layer_of() {
   case $1 in
+    opt/qp/*) echo qp ;;
     opt/planner.*) echo planner ;;
     *) echo "${1%%/*}" ;;
   esac
@@ -20,10 +21,11 @@ declare -A may_use=(
   [alloc]="rt alloc"
   [models]="rt alloc models"
   [sampler]="rt alloc models sampler"
-  [opt]="rt alloc models opt"
-  [planner]="rt alloc models sampler opt planner"
-  [tools]="rt alloc models sampler opt planner tools"
-  [tests]="rt alloc models sampler opt planner tools tests"
+  [qp]="rt alloc models qp"
+  [opt]="rt alloc models qp opt"
+  [planner]="rt alloc models sampler qp opt planner"
+  [tools]="rt alloc models sampler qp opt planner tools"
+  [tests]="rt alloc models sampler qp opt planner tools tests"
 )
 
 folders=()

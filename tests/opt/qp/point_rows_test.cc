@@ -1,9 +1,12 @@
-#include "opt/point_rows.h"
+#include "opt/qp/point_rows.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "tests/support/dense_qp.h"
@@ -21,8 +24,8 @@ TEST(PointRows, StandsOnTheLineBetweenTheEndsWithoutMultipliers) {
   rows->reset(4, {0.0, 8.0}, {4.0, 0.0});
   rows->update_primal({}, {});
   EXPECT_EQ(rows->num_steps(), 4);
-  EXPECT_EQ(rows->num_rows(), 0);
-  EXPECT_EQ(rows->most_violated(), -1);
+  EXPECT_EQ(rows->num_ids(), 0);
+  EXPECT_EQ(rows->most_violated(0.0), -1);
   for (int t = 0; t <= 4; ++t) {
     EXPECT_NEAR(rows->position(t).x(), t, 1e-15);
     EXPECT_NEAR(rows->position(t).y(), 8.0 - 2.0 * t, 1e-15);
@@ -37,10 +40,11 @@ TEST(PointRows, HasTheGramOfTheInverseSecondDifference) {
     ASSERT_TRUE(oracle::fill(qp, *rows));
     const Eigen::MatrixXd expected = qp.gram();
     const std::vector<int> index = oracle::row_indices(qp);
+    std::vector<double> gram(index.size());
     for (std::size_t i = 0; i < index.size(); ++i) {
+      rows->gram(index, index[i], gram.data());
       for (std::size_t k = 0; k < index.size(); ++k) {
-        EXPECT_NEAR(rows->gram(index[i], index[k]),
-                    expected(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)),
+        EXPECT_NEAR(gram[k], expected(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)),
                     1e-12 * num_steps);
       }
     }
@@ -81,6 +85,11 @@ TEST(PointRows, MovesThePrimalAsTheGreensFunctionSays) {
   }
 }
 
+// Of waypoint t, by which violations are priced: 1 / sqrt(G(t,t)).
+double price(int t, int num_steps) {
+  return std::sqrt(num_steps / (static_cast<double>(t) * (num_steps - t)));
+}
+
 TEST(PointRows, FindsTheMostViolatedRowAndNeverPadding) {
   Random random(3);
   InArena<PointRows> rows(60, 512);
@@ -96,17 +105,98 @@ TEST(PointRows, FindsTheMostViolatedRowAndNeverPadding) {
     ASSERT_TRUE(oracle::fill(qp, *rows));
     rows->update_primal({}, {});
     const std::vector<int> index = oracle::row_indices(qp);
-    int expected = index.front();
-    for (const int i : index) {
-      if (rows->violation(i) > rows->violation(expected)) expected = i;
+    const double tolerance = random.chance(0.5) ? 0.0 : 0.1;
+    std::vector<double> priced;
+    for (std::size_t i = 0; i < index.size(); ++i) {
+      const double excess = rows->violation(index[i]) - tolerance;
+      priced.push_back(excess * price(qp.rows[i].t, qp.num_steps));
     }
-    EXPECT_EQ(rows->most_violated(), expected);
-    EXPECT_EQ(rows->num_rows() % kLanesDouble, 0);
-    for (int i = 0; i < rows->num_rows(); ++i) {
+    const double worst = *std::max_element(priced.begin(), priced.end());
+    const int found = rows->most_violated(tolerance);
+    if (worst < -1e-12) {
+      EXPECT_EQ(found, -1);
+    }
+    if (worst > 1e-12) {
+      const auto at = std::find(index.begin(), index.end(), found) - index.begin();
+      ASSERT_LT(at, static_cast<std::ptrdiff_t>(index.size())) << "padding, or nothing";
+      EXPECT_NEAR(priced[static_cast<std::size_t>(at)], worst, 1e-12);
+    }
+    EXPECT_EQ(rows->num_ids() % kLanesDouble, 0);
+    for (int i = 0; i < rows->num_ids(); ++i) {
       if (std::find(index.begin(), index.end(), i) == index.end()) {
-        EXPECT_LT(rows->violation(i), rows->violation(expected)) << "padding";
+        EXPECT_LT(rows->violation(i), 0.0) << "padding";
       }
     }
+  }
+}
+
+TEST(PointRows, PrefersTheLowestIdAmongEquals) {
+  InArena<PointRows> rows(10, 64);
+  rows->reset(10, Vec2::Zero(), {10.0, 0.0});
+  for (int i = 0; i < 6; ++i) ASSERT_TRUE(rows->try_add(5, Vec2::UnitY(), 1.0));
+  EXPECT_EQ(rows->most_violated(0.0), 0);
+}
+
+TEST(PointRows, DoesNotPriceRowsThatAreEntered) {
+  InArena<PointRows> rows(10, 64);
+  rows->reset(10, Vec2::Zero(), {10.0, 0.0});
+  ASSERT_TRUE(rows->try_add(5, Vec2::UnitY(), 1.0));
+  ASSERT_TRUE(rows->try_add(5, Vec2::UnitY(), 2.0));
+  EXPECT_EQ(rows->most_violated(0.0), 1);
+  rows->enter(1);
+  EXPECT_EQ(rows->most_violated(0.0), 0);
+  EXPECT_NEAR(rows->violation(1), 2.0, 1e-15);
+  rows->enter(0);
+  EXPECT_EQ(rows->most_violated(0.0), -1);
+  rows->leave(1);
+  EXPECT_EQ(rows->most_violated(0.0), 1);
+  EXPECT_EQ(rows->most_violated(2.0), -1);
+}
+
+TEST(PointRows, AddsAStepAlongRows) {
+  Random random(4);
+  InArena<PointRows> rows(60, 512);
+  for (int round = 0; round < 50; ++round) {
+    const int num_steps = 2 + random.index(59);
+    const SegmentQp qp = oracle::random_feasible_qp(random, num_steps, 1 + random.index(20));
+    ASSERT_TRUE(oracle::fill(qp, *rows));
+    const std::vector<int> index = oracle::row_indices(qp);
+    std::vector<double> weights;
+    Eigen::VectorXd lambda(static_cast<Eigen::Index>(index.size()));
+    for (Eigen::Index i = 0; i < lambda.size(); ++i) {
+      weights.push_back(lambda[i] = random.uniform(-0.1, 0.1));
+    }
+    rows->update_primal({}, {});
+    rows->update_step(index, weights);
+    const Eigen::VectorXd step_values = qp.gram() * lambda;
+    for (std::size_t i = 0; i < index.size(); ++i) {
+      EXPECT_NEAR(rows->step_value(index[i]), step_values[static_cast<Eigen::Index>(i)],
+                  1e-12 * num_steps);
+    }
+    rows->add_step();
+    const Eigen::VectorXd expected = qp.primal(lambda);
+    for (int t = 1; t < num_steps; ++t) {
+      EXPECT_LE((rows->position(t) - expected.segment<2>(2 * (t - 1))).norm(), 1e-12 * num_steps);
+    }
+  }
+}
+
+TEST(PointRows, SaysWhenANumberIsNotFinite) {
+  constexpr double kBad[] = {std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::infinity()};
+  InArena<PointRows> rows(10, 16);
+  for (const double bad : kBad) {
+    rows->reset(4, {bad, 0.0}, {1.0, 0.0});
+    EXPECT_FALSE(rows->is_valid());
+    rows->reset(4, Vec2::Zero(), {1.0, -bad});
+    EXPECT_FALSE(rows->is_valid());
+    rows->reset(4, Vec2::Zero(), {1.0, 0.0});
+    EXPECT_TRUE(rows->is_valid());
+    ASSERT_TRUE(rows->try_add(1, {0.0, bad}, 0.0));
+    EXPECT_FALSE(rows->is_valid());
+    rows->reset(4, Vec2::Zero(), {1.0, 0.0});
+    ASSERT_TRUE(rows->try_add(1, Vec2::UnitX(), -bad));
+    EXPECT_FALSE(rows->is_valid());
   }
 }
 
@@ -117,11 +207,11 @@ TEST(PointRows, RefusesRowsBeyondItsCapacity) {
   while (num_added < 1000 && rows->try_add(5, Vec2::UnitY(), 0.1 * num_added)) ++num_added;
   EXPECT_GE(num_added, 16);
   EXPECT_LT(num_added, 1000);
-  const int num_rows = rows->num_rows();
+  const int num_ids = rows->num_ids();
   EXPECT_FALSE(rows->try_add(9, Vec2::UnitX(), 100.0));
-  EXPECT_EQ(rows->num_rows(), num_rows);
+  EXPECT_EQ(rows->num_ids(), num_ids);
   rows->update_primal({}, {});
-  EXPECT_NEAR(rows->violation(rows->most_violated()), 0.1 * (num_added - 1), 1e-12);
+  EXPECT_NEAR(rows->violation(rows->most_violated(0.0)), 0.1 * (num_added - 1), 1e-12);
 }
 
 TEST(PointRows, ForgetsRowsAtReset) {
@@ -130,12 +220,12 @@ TEST(PointRows, ForgetsRowsAtReset) {
   ASSERT_TRUE(rows->try_add(1, Vec2::UnitY(), 1.0));
   ASSERT_TRUE(rows->try_add(1, Vec2::UnitX(), 1.0));
   rows->reset(6, Vec2::Zero(), {1.0, 0.0});
-  EXPECT_EQ(rows->num_rows(), 0);
-  ASSERT_TRUE(rows->try_add(1, Vec2::UnitY(), -1.0));
+  EXPECT_EQ(rows->num_ids(), 0);
+  ASSERT_TRUE(rows->try_add(1, Vec2::UnitY(), 2.0));
   rows->update_primal({}, {});
-  EXPECT_EQ(rows->num_rows(), kLanesDouble);
-  EXPECT_EQ(rows->most_violated(), 0);
-  EXPECT_NEAR(rows->violation(0), -1.0, 1e-15);
+  EXPECT_EQ(rows->num_ids(), kLanesDouble);
+  EXPECT_EQ(rows->most_violated(0.0), 0);
+  EXPECT_NEAR(rows->violation(0), 2.0, 1e-15);
 }
 
 TEST(PointRows, ShortensAStepTowardsTheReference) {
