@@ -17,7 +17,6 @@
 
 namespace sopt {
 
-inline constexpr std::size_t kMaxJsonSize_B = std::size_t{64} << 20;
 inline constexpr int kMaxJsonDepth = 32;
 inline constexpr std::size_t kMaxJsonValues = std::size_t{1} << 22;
 

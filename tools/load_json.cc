@@ -1,13 +1,11 @@
 // The parser behind load_json: nlohmann's event parser drives a builder that counts depth and
 // values and sees duplicate fields, so that limits hold before memory is spent. Neither the parser
 // nor the builder recurses.
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <system_error>
+
 #include <vector>
 
 #include "tools/input_error.h"
+#include "tools/input_text.h"
 #include "tools/json_fields.h"
 
 namespace sopt {
@@ -104,42 +102,12 @@ class Builder final : public nlohmann::json_sax<json> {
   std::size_t num_values_ = 0;
 };
 
-// At most kMaxJsonSize_B, also from pipes, whose size nobody knows.
-std::string read_file(const std::filesystem::path& file, const std::string& shown) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(file, error);
-  if (std::filesystem::is_directory(status)) {
-    throw InputError(shown + ": is a directory; it must be a JSON file");
-  }
-  const std::string limit =
-      "; it must be at most " + std::to_string(kMaxJsonSize_B >> 20U) + " MiB";
-  if (std::filesystem::is_regular_file(status)) {
-    const std::uintmax_t size_B = std::filesystem::file_size(file, error);
-    if (!error && size_B > kMaxJsonSize_B) {
-      throw InputError(shown + ": is " + std::to_string(size_B >> 20U) + " MiB" + limit);
-    }
-  }
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) {
-    throw InputError(shown + ": cannot be read: " + std::strerror(errno == 0 ? EIO : errno));
-  }
-  std::string text;
-  std::vector<char> chunk(std::size_t{1} << 16U);
-  while (in.read(chunk.data(), static_cast<std::streamsize>(chunk.size())) || in.gcount() > 0) {
-    text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
-    if (text.size() > kMaxJsonSize_B) throw InputError(shown + ": is larger than allowed" + limit);
-  }
-  if (in.bad()) throw InputError(shown + ": cannot be read: " + std::strerror(EIO));
-  if (text.empty()) throw InputError(shown + ": is empty; it must be a JSON object");
-  return text;
-}
-
 }  // namespace
 
 nlohmann::json load_json(const std::filesystem::path& file) {
   const std::string shown = printable(file.string(), 400);
-  const std::string text = read_file(file, shown);
+  const std::string text = read_input(file, "a JSON file");
+  if (text.empty()) throw InputError(shown + ": is empty; it must be a JSON object");
   json root;
   Builder builder(shown, root);
   if (!json::sax_parse(text, &builder)) throw InputError(shown + ": not valid JSON");

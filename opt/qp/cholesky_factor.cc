@@ -18,7 +18,7 @@ bool CholeskyFactor<Scalar>::factorize(int size, const Scalar* matrix) SOPT_RT {
     }
     load_block(size, matrix, first);
     eliminate_left(first);
-    if (!factorize_diagonal(first, thresholds)) return false;
+    if (!factorize_diagonal(first, size - first, thresholds)) return false;
     store_block(first);
   }
   size_ = size;
@@ -64,12 +64,15 @@ void CholeskyFactor<Scalar>::eliminate_left(int first) SOPT_RT {
   }
 }
 
-// The diagonal block, which has all but its own part eliminated: L, then its inverse in place.
+// The diagonal block, which has all but its own part eliminated: L, then its inverse in place. Of
+// its rows num_rows are the matrix's; the identity beyond is its own factor.
 template <class Scalar>
-bool CholeskyFactor<Scalar>::factorize_diagonal(int first, const Scalar* thresholds) SOPT_RT {
+bool CholeskyFactor<Scalar>::factorize_diagonal(int first, int num_rows,
+                                                const Scalar* thresholds) SOPT_RT {
   Scalar* const block = columns_.begin() + kBlock * first;  // entry (k, m) at [kBlock m + k]
   Scalar inverse[kBlock] = {};
-  for (int m = 0; m < kBlock; ++m) {
+  std::fill(inverse, inverse + kBlock, Scalar(1));
+  for (int m = 0; m < std::min(kBlock, num_rows); ++m) {
     Scalar pivot = block[kBlock * m + m];
     for (int r = 0; r < m; ++r) pivot -= block[kBlock * r + m] * block[kBlock * r + m];
     if (!(pivot > thresholds[m]) || !(pivot < std::numeric_limits<Scalar>::infinity())) {

@@ -46,7 +46,7 @@ class CholeskyFactor {
   [[nodiscard]] const Scalar* row(int i) const SOPT_RT { return factor_.begin() + i * stride_; }
   void load_block(int size, const Scalar* matrix, int first) SOPT_RT;
   void eliminate_left(int first) SOPT_RT;
-  [[nodiscard]] bool factorize_diagonal(int first, const Scalar* thresholds) SOPT_RT;
+  [[nodiscard]] bool factorize_diagonal(int first, int num_rows, const Scalar* thresholds) SOPT_RT;
   void store_block(int first) SOPT_RT;
 
   int max_size_ = 0;

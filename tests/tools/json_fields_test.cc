@@ -4,6 +4,7 @@
 
 #include "tests/tools/temporary_folder.h"
 #include "tools/input_error.h"
+#include "tools/input_text.h"
 
 namespace sopt {
 namespace {
@@ -44,12 +45,12 @@ TEST_F(JsonFieldsTest, DepthHasALimitAndTheLimitIsAllowed) {
 
 TEST_F(JsonFieldsTest, SizeHasALimit) {
   write("big", "");
-  std::filesystem::resize_file(folder() / "big", kMaxJsonSize_B + (std::size_t{1} << 20U));
+  std::filesystem::resize_file(folder() / "big", kMaxInputSize_B + (std::size_t{1} << 20U));
   EXPECT_EQ(refusal("big"), "big: is 65 MiB; it must be at most 64 MiB");
 }
 
 TEST_F(JsonFieldsTest, SpacesUpToTheLimitAreAllowed) {
-  write("wide", '1' + std::string(kMaxJsonSize_B - 1, ' '));
+  write("wide", '1' + std::string(kMaxInputSize_B - 1, ' '));
   EXPECT_EQ(refusal("wide"), "");
 }
 
