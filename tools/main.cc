@@ -6,9 +6,9 @@
 #include <new>
 #include <string>
 
-#include "tools/bench_command.h"
-#include "tools/input_error.h"
-#include "tools/json_fields.h"
+#include "tools/bench/bench_command.h"
+#include "tools/io/input_error.h"
+#include "tools/io/json_fields.h"
 #include "tools/plan_command.h"
 #include "tools/qp_command.h"
 #include "tools/verify_command.h"

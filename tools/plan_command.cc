@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "opt/planner.h"
-#include "tools/algorithm_options.h"
-#include "tools/input_error.h"
-#include "tools/json_text.h"
-#include "tools/option_checks.h"
-#include "tools/output_file.h"
-#include "tools/plan_file.h"
-#include "tools/plan_picture.h"
-#include "tools/plan_report.h"
-#include "tools/planner_host.h"
+#include "tools/cli/algorithm_options.h"
+#include "tools/cli/option_checks.h"
+#include "tools/cli/planner_host.h"
+#include "tools/io/input_error.h"
+#include "tools/io/json_text.h"
+#include "tools/io/output_file.h"
+#include "tools/io/plan_file.h"
+#include "tools/io/plan_picture.h"
+#include "tools/io/plan_report.h"
 
 namespace sopt {
 namespace {

@@ -7,12 +7,12 @@
 #include <optional>
 #include <string>
 
-#include "tools/input_error.h"
-#include "tools/json_fields.h"
-#include "tools/option_checks.h"
-#include "tools/plan_report.h"
-#include "tools/qp_file.h"
-#include "tools/qp_solution.h"
+#include "tools/cli/option_checks.h"
+#include "tools/io/input_error.h"
+#include "tools/io/json_fields.h"
+#include "tools/io/plan_report.h"
+#include "tools/io/qp_file.h"
+#include "tools/qp/qp_solution.h"
 
 namespace sopt {
 namespace {

@@ -5,12 +5,12 @@
 #include <memory>
 
 #include "opt/verify.h"
-#include "tools/json_fields.h"
-#include "tools/json_text.h"
-#include "tools/option_checks.h"
-#include "tools/output_file.h"
-#include "tools/plan_file.h"
-#include "tools/plan_report.h"
+#include "tools/cli/option_checks.h"
+#include "tools/io/json_fields.h"
+#include "tools/io/json_text.h"
+#include "tools/io/output_file.h"
+#include "tools/io/plan_file.h"
+#include "tools/io/plan_report.h"
 
 namespace sopt {
 namespace {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Dependencies between folders go one way:
 #   rt -> alloc -> models -> {sampler, opt/qp -> opt core} -> opt/planner -> tools -> tests
+# and in tools: io -> {cli -> qp, scenes} -> bench -> main and the commands.
 # Every #include "..." names a file by its path from the project's root, and that file may be used
 # from the including file's layer. Prints each violation; exit code 1 when there is one.
 # usage: layers.sh [ROOT]
@@ -12,10 +13,13 @@ layer_of() {
   case $1 in
     opt/qp/*) echo qp ;;
     opt/planner.*) echo planner ;;
+    tools/*/*) echo "$(cut -d/ -f1,2 <<<"$1")" ;;
     *) echo "${1%%/*}" ;;
   esac
 }
 
+libraries="rt alloc models sampler qp opt planner"
+tool_rooms="tools/io tools/cli tools/qp tools/scenes tools/bench"
 declare -A may_use=(
   [rt]="rt"
   [alloc]="rt alloc"
@@ -24,8 +28,13 @@ declare -A may_use=(
   [qp]="rt alloc models qp"
   [opt]="rt alloc models qp opt"
   [planner]="rt alloc models sampler qp opt planner"
-  [tools]="rt alloc models sampler qp opt planner tools"
-  [tests]="rt alloc models sampler qp opt planner tools tests"
+  [tools/io]="$libraries tools/io"
+  [tools/cli]="$libraries tools/io tools/cli"
+  [tools/qp]="$libraries tools/io tools/cli tools/qp"
+  [tools/scenes]="$libraries tools/io tools/scenes"
+  [tools/bench]="$libraries $tool_rooms"
+  [tools]="$libraries $tool_rooms tools"
+  [tests]="$libraries $tool_rooms tools tests"
 )
 
 folders=()
@@ -48,7 +57,7 @@ while IFS=: read -r file line text; do
   to=$(layer_of "$header")
   if [[ ! -f $header ]]; then
     violation "$file:$line: \"$header\" is not a path from the project's root"
-  elif [[ " ${may_use[$from]} " != *" $to "* ]]; then
+  elif [[ " ${may_use[$from]-} " != *" $to "* ]]; then
     violation "$file:$line: $from must not include \"$header\" ($to)"
   fi
 done < <(grep -rnE --include='*.h' --include='*.cc' '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' \

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "tools/qp_file.h"
-#include "tools/qp_solution.h"
+#include "tools/io/qp_file.h"
+#include "tools/qp/qp_solution.h"
 
 namespace sopt {
 namespace {

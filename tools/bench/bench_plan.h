@@ -1,0 +1,56 @@
+// The measurement behind `sopt bench plan`: every scene with every seed, on a planner that was
+// warmed up by one call.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "models/config.h"
+#include "opt/planner.h"
+#include "tools/cli/algorithm_options.h"
+
+namespace sopt {
+
+struct BenchPlanOptions {
+  AlgorithmOptions algorithm;
+  int num_seeds = 16;              // 1..num_seeds
+  int num_repeats = 1;             // calls per scene and seed, each of them counted
+  bool cpu_time = false;           // thread CPU time instead of elapsed time
+  bool compare_converged = false;  // also plan with 200 sweeps and no early stop
+};
+
+// One call of plan().
+struct BenchCase {
+  std::string scene;
+  std::uint64_t seed = 0;
+  PlanStatus status = PlanStatus::kBadInput;
+  StageTimes times;
+  double sampler_path_length_m = 0.0;
+  double path_length_m = 0.0;
+  double cost = 0.0;
+  double duration_s = 0.0;
+  int horizon = 0;
+  int iterations = 0;
+  int segments_initial = 0;
+  int segments_final = 0;
+  SamplerCounts sampler_counts;
+  OptimizerCounts optimizer_counts;
+  double reference_ratio = 0.0;  // path length / reference_feasible_length; 0: the scene has none
+  // Relative to 200 sweeps; 0: not compared.
+  double cost_ratio = 0.0;
+  double length_ratio = 0.0;
+  double duration_ratio = 0.0;
+};
+
+struct BenchRun {
+  std::vector<BenchCase> cases;
+  std::vector<double> world_build_us;  // one per scene: emptied, obstacles added, broad phase
+};
+
+// Throws what load_scene and PlannerHost throw.
+[[nodiscard]] BenchRun run_bench(const std::vector<std::filesystem::path>& scenes,
+                                 const BenchPlanOptions& options);
+
+}  // namespace sopt

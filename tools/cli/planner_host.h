@@ -1,0 +1,40 @@
+// A planner with the memory and the executor it lives on, for programs that plan one scene.
+#pragma once
+
+#include "alloc/arena.h"
+#include "alloc/memory_block.h"
+#include "opt/planner.h"
+#include "rt/executor.h"
+#include "tools/io/input_error.h"
+#include "tools/io/plan_report.h"
+#include "tools/io/scene_file.h"
+
+namespace sopt {
+
+class PlannerHost {
+ public:
+  // Sized for requests on `scene` with `options`. Throws HostError when there is no memory.
+  PlannerHost(const Scene& scene, const PlanOptions& options, Clock clock = monotonic_clock())
+      : settings_(make_settings(scene, options)),
+        memory_(Planner<Point2>::required_bytes(settings_)),
+        arena_(memory_),
+        planner_(arena_, scene.robot, settings_, executor_, clock) {
+    if (arena_.exhausted()) {
+      throw HostError(
+          format("the host has no %zu MiB of memory for the planner; smaller --samples "
+                 "or --streams need less",
+                 Planner<Point2>::required_bytes(settings_) >> 20U));
+    }
+  }
+
+  [[nodiscard]] Planner<Point2>& planner() { return planner_; }
+
+ private:
+  PlannerSettings settings_;
+  MemoryBlock memory_;
+  Arena arena_;
+  SerialExecutor executor_;
+  Planner<Point2> planner_;
+};
+
+}  // namespace sopt

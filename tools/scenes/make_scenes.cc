@@ -1,0 +1,28 @@
+// Writes the shipped planar scenes: `sopt_make_scenes tools/scenes`. The same bytes on every run,
+// so a difference to the files that are there is a change of the generator.
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <vector>
+
+#include "tools/io/output_file.h"
+#include "tools/scenes/scene_generator.h"
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    (void)std::fprintf(stderr, "usage: sopt_make_scenes DIR\n");
+    return 2;
+  }
+  try {
+    std::vector<sopt::OutputFile> files;
+    for (const sopt::GeneratedScene& scene : sopt::generate_scenes()) {
+      files.push_back({std::filesystem::path(argv[1]) / scene.file, sopt::to_json_text(scene)});
+      std::filesystem::create_directories(files.back().file.parent_path());
+    }
+    sopt::write_files(files);
+  } catch (const std::exception& error) {
+    (void)std::fprintf(stderr, "sopt_make_scenes: %s\n", error.what());
+    return 3;
+  }
+  return 0;
+}
