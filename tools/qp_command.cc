@@ -59,8 +59,10 @@ std::string describe_failure(const QpSolution& solution) {
 }
 
 std::string describe_work(const QpResult<double>& result) {
-  return format("  working set   %d changes, %d active%s\n", result.num_steps, result.num_active,
-                result.num_refactored > 0 ? ", begun again once" : "");
+  std::string text =
+      format("  working set   %d changes, %d active", result.num_steps, result.num_active);
+  if (result.num_refactored > 0) text += format(", begun again %dx", result.num_refactored);
+  return text + '\n';
 }
 
 std::string describe(const QpProblem& problem, const QpSolution& solution) {

@@ -66,11 +66,7 @@ template <class Rows>
 QpResult<Scalar> ActiveSetQp<Scalar>::solve(Rows& rows, const QpOptions<Scalar>& options,
                                             const Deadline& deadline) SOPT_RT {
   Run<Rows> run{rows, options, deadline};
-  active_.clear();
-  lambda_.clear();
-  scale_.clear();
-  aside_.clear();
-  gram_.clear();
+  clear();
   if (!rows.is_valid()) {
     run.result.status = QpStatus::kBadInput;
     return run.result;
@@ -92,8 +88,7 @@ template <class Scalar>
 template <class Rows>
 QpStatus ActiveSetQp<Scalar>::begin_from(Run<Rows>& run, const QpWarmStart<Scalar>& warm) SOPT_RT {
   num_equalities_ = 0;
-  num_stalled_ = 0;
-  progress_ = 0;
+  cycles_.reset();
   if (run.rows.num_equalities() == 0 && warm.rows.empty()) return QpStatus::kNotSolved;
   run.rows.update_primal({}, {});
   QpStatus status = add_equalities(run);
@@ -178,6 +173,7 @@ QpStatus ActiveSetQp<Scalar>::drop_negative(Run<Rows>& run) SOPT_RT {
 template <class Scalar>
 template <class Rows>
 QpStatus ActiveSetQp<Scalar>::improve(Run<Rows>& run) SOPT_RT {
+  if (cycles_.is_cycling(active_.span())) return QpStatus::kInaccurate;
   const Scalar tolerance = run.options.violation_tolerance;
   run.rows.update_primal(active_.span(), lambda_.span());
   if (!tighten_active(run.rows, tolerance)) return QpStatus::kInaccurate;
@@ -243,12 +239,7 @@ QpStatus ActiveSetQp<Scalar>::make_hold(Run<Rows>& run, int row) SOPT_RT {
       if (j >= num_equalities_) lambda_[j] = std::max(Scalar(0), lambda_[j]);
     }
     lambda += step;
-    const Scalar gain = step * violation;
-    num_stalled_ = progress_ + gain > progress_ ? 0 : num_stalled_ + 1;
-    progress_ += gain;
-    if (num_stalled_ > 2 * active_.capacity() + kPatience) {
-      status = QpStatus::kInaccurate;
-    } else if (full_step <= blocking.step) {
+    if (full_step <= blocking.step) {
       if (try_append(row, lambda, direction.curvature, diagonal)) return QpStatus::kNotSolved;
       status = QpStatus::kCapacity;
     } else {
@@ -303,6 +294,14 @@ Scalar ActiveSetQp<Scalar>::aside_violation(const Rows& rows, int id) SOPT_RT {
   return id < rows.num_equalities() ? std::abs(violation) : violation;
 }
 
+template <class Scalar>
+template <class Rows>
+Scalar ActiveSetQp<Scalar>::aside_residual(const Rows& rows) const SOPT_RT {
+  Scalar worst = 0;
+  for (const int id : aside_) worst = std::max(worst, aside_violation(rows, id));
+  return worst;
+}
+
 // No row is violated: the solution, if the multipliers' signs and the active rows agree.
 template <class Scalar>
 template <class Rows>
@@ -313,8 +312,7 @@ QpStatus ActiveSetQp<Scalar>::accept(Run<Rows>& run) SOPT_RT {
     if (status == QpStatus::kNotSolved) drop(run.rows, negative);
     return status;
   }
-  Scalar residual = worst_residual_;
-  for (const int id : aside_) residual = std::max(residual, aside_violation(run.rows, id));
+  const Scalar residual = std::max(worst_residual_, aside_residual(run.rows));
   return residual <= 10 * run.options.violation_tolerance ? QpStatus::kOptimal
                                                           : QpStatus::kInaccurate;
 }
@@ -326,12 +324,17 @@ void ActiveSetQp<Scalar>::begin_again(Run<Rows>& run) SOPT_RT {
   ++run.result.num_refactored;
   (void)wanted_.try_assign(active_.span());
   leave_all(run.rows);
+  clear();
+  run.result.status = begin_from(run, {wanted_.span(), {}});
+}
+
+template <class Scalar>
+void ActiveSetQp<Scalar>::clear() SOPT_RT {
   active_.clear();
   lambda_.clear();
   scale_.clear();
   aside_.clear();
   gram_.clear();
-  run.result.status = begin_from(run, {wanted_.span(), {}});
 }
 
 template <class Scalar>
@@ -342,14 +345,12 @@ void ActiveSetQp<Scalar>::finish(Run<Rows>& run) SOPT_RT {
   result.primal_residual =
       result.status == QpStatus::kOptimal ? worst_residual_ : active_residual(run.rows);
   if (result.status != QpStatus::kOptimal) {
-    const int worst = run.rows.most_violated(Scalar(0));
-    if (worst >= 0) {
-      result.primal_residual = std::max(result.primal_residual, run.rows.violation(worst));
+    for (int id = 0; id < run.rows.num_ids(); ++id) {
+      if (!run.rows.is_free(id)) continue;
+      result.primal_residual = std::max(result.primal_residual, run.rows.violation(id));
     }
   }
-  for (const int id : aside_) {
-    result.primal_residual = std::max(result.primal_residual, aside_violation(run.rows, id));
-  }
+  result.primal_residual = std::max(result.primal_residual, aside_residual(run.rows));
   Scalar largest = 0;
   Scalar lowest = 0;
   for (int j = 0; j < active_.size(); ++j) {

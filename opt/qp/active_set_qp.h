@@ -33,6 +33,7 @@
 #include <span>
 
 #include "alloc/fixed_vector.h"
+#include "opt/qp/cycle_detector.h"
 #include "opt/qp/gram_inverse.h"
 #include "opt/qp/qp_result.h"
 #include "rt/annotations.h"
@@ -49,7 +50,8 @@ class ActiveSetQp {
 
   // Solves over `rows`, whose primal ends at the solution; when the status is not kOptimal, at the
   // solution for the rows active so far, which is not feasible. The deadline is polled at every
-  // change.
+  // change. Compiled in active_set_qp.cc for the library's row spaces; another one needs a line
+  // there.
   template <class Rows>
   [[nodiscard]] QpResult<Scalar> solve(Rows& rows, const QpOptions<Scalar>& options,
                                        const Deadline& deadline) SOPT_RT;
@@ -59,8 +61,6 @@ class ActiveSetQp {
   [[nodiscard]] std::span<const Scalar> multipliers() const SOPT_RT { return lambda_.span(); }
 
  private:
-  // Changes without progress before the factor is rebuilt, beyond twice the capacity.
-  static constexpr int kPatience = 10;
   // Refinement rounds of a direction, and of the multipliers.
   static constexpr int kMaxRefinements = 3;
   // Rebuilds of the factor.
@@ -102,9 +102,12 @@ class ActiveSetQp {
   template <class Rows>
   [[nodiscard]] static Scalar aside_violation(const Rows& rows, int id) SOPT_RT;
   template <class Rows>
+  [[nodiscard]] Scalar aside_residual(const Rows& rows) const SOPT_RT;
+  template <class Rows>
   [[nodiscard]] QpStatus accept(Run<Rows>& run) SOPT_RT;
   template <class Rows>
   void begin_again(Run<Rows>& run) SOPT_RT;
+  void clear() SOPT_RT;
   template <class Rows>
   void finish(Run<Rows>& run) SOPT_RT;
 
@@ -128,9 +131,8 @@ class ActiveSetQp {
   void leave_all(Rows& rows) SOPT_RT;
 
   int num_equalities_ = 0;        // leading entries of active_ that never leave
-  int num_stalled_ = 0;           // changes in a row without progress
-  Scalar progress_ = 0;           // of the dual objective, in all
   Scalar worst_residual_ = 0;     // largest of residual_, by size
+  CycleDetector cycles_;          // of active_, round by round
   FixedVector<int> active_;       // q ids
   FixedVector<int> wanted_;       // ids to begin from again
   FixedVector<int> aside_;        // ids that hold but for rounding and cannot be made to

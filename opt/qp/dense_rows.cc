@@ -21,6 +21,8 @@ DenseRows<Scalar>::DenseRows(Arena& arena, const DenseCapacity& capacity) noexce
       rows_(arena, bounds_begin_ * stride_),
       stretch_(arena, bounds_begin_ / kGroup),
       row_value_(arena, bounds_begin_),
+      inverse_diagonal_(arena, stride_),
+      price_(arena, bounds_begin_ + stride_),
       softness_(arena, bounds_begin_ + stride_),
       slot_(arena, 2 * (bounds_begin_ + stride_)),
       equalities_(arena, capacity.max_rows + capacity.max_variables),
@@ -37,7 +39,8 @@ DenseRows<Scalar>::DenseRows(Arena& arena, const DenseCapacity& capacity) noexce
       (void)numbers->try_resize(numbers->capacity());
     }
   }
-  for (auto* numbers : {&rows_, &row_value_, &softness_, &y_, &base_, &x_, &step_, &scratch_}) {
+  for (auto* numbers : {&rows_, &row_value_, &inverse_diagonal_, &price_, &softness_, &y_, &base_,
+                        &x_, &step_, &scratch_}) {
     (void)numbers->try_resize(numbers->capacity());
   }
   (void)slot_.try_resize(slot_.capacity());
@@ -48,6 +51,9 @@ template <class Scalar>
 bool DenseRows<Scalar>::factorize(int num_variables, const Scalar* hessian) SOPT_RT {
   is_convex_ = factor_.factorize(num_variables, hessian);
   num_variables_ = factor_.size();
+  for (int j = 0; j < num_variables_; ++j) {
+    inverse_diagonal_[j] = Scalar(1) / hessian[j * num_variables + j];
+  }
   return is_convex_;
 }
 
@@ -76,6 +82,7 @@ void DenseRows<Scalar>::clear_constraints(int first, int last) SOPT_RT {
     std::fill(sides->scale.begin() + first, sides->scale.begin() + last, Scalar(1));
   }
   std::fill(softness_.begin() + first, softness_.begin() + last, Scalar(0));
+  std::fill(price_.begin() + first, price_.begin() + last, Scalar(0));
 }
 
 template <class Scalar>
@@ -88,30 +95,41 @@ bool DenseRows<Scalar>::try_add(const Scalar* a, Scalar lower, Scalar upper) SOP
     std::fill(group, group + kGroup * n, Scalar(0));
     clear_constraints(num_rows_, num_rows_ + kGroup);
   }
-  int first = 0;
-  int last = n;
-  while (first < n && a[first] == Scalar(0)) ++first;
-  while (last > first && a[last - 1] == Scalar(0)) --last;
+  Scalar* const stored = row(num_rows_);
+  const Scalar* const inverse_diagonal = inverse_diagonal_.begin();
+  Scalar length2 = 0;
+  Scalar gram = 0;
+  int first = n;
+  int last = 0;
+  for (int j = 0; j < n; ++j) {
+    const Scalar square = a[j] * a[j];
+    stored[kGroup * j] = a[j];
+    length2 += square;
+    gram += square * inverse_diagonal[j];
+    const bool is_nonzero = a[j] != Scalar(0);
+    first = is_nonzero ? std::min(first, j) : first;
+    last = is_nonzero ? j + 1 : last;
+  }
   Stretch& stretch = stretch_.back();
   stretch.first = std::min(stretch.first, first);
   stretch.last = std::max(stretch.last, last);
-  Scalar* const stored = row(num_rows_);
-  Scalar even = 0;
-  Scalar odd = 0;
-  for (int j = first; j < last; ++j) {
-    stored[kGroup * j] = a[j];
-    (j % 2 == 0 ? even : odd) += a[j] * a[j];
-  }
-  const Scalar length2 = even + odd;
   not_finite_ += Scalar(0) * length2;
   ++num_rows_;
   set_constraint(num_rows_ - 1, lower, upper, std::sqrt(length2));
+  set_price(num_rows_ - 1, gram);
   return true;
 }
 
 template <class Scalar>
 void DenseRows<Scalar>::set_bounds(int variable, Scalar lower, Scalar upper) SOPT_RT {
   set_constraint(num_rows_ + variable, lower, upper, Scalar(1));
+  set_price(num_rows_ + variable, inverse_diagonal_[variable]);
+}
+
+// By the estimate sum a_j^2 / H_jj of the row's gram entry, exact for a diagonal Hessian.
+template <class Scalar>
+void DenseRows<Scalar>::set_price(int constraint, Scalar gram) SOPT_RT {
+  price_[position(constraint)] = gram > Scalar(0) ? Scalar(1) / gram : Scalar(1);
 }
 
 template <class Scalar>
@@ -127,16 +145,21 @@ void DenseRows<Scalar>::set_constraint(int constraint, Scalar lower, Scalar uppe
     sides->bound[p] = sides->priced_bound[p] = bound;
     sides->scale[p] = is_finite ? Scalar(1) / std::max(length, std::abs(bound)) : Scalar(1);
   }
-  auto* const known = std::find(equalities_.begin(), equalities_.end(), constraint);
-  if (known != equalities_.end()) {
-    std::copy(known + 1, equalities_.end(), known);
-    (void)equalities_.try_resize(equalities_.size() - 1);
-  }
+  forget_equality(constraint);
   if (lower == upper) {
     (void)equalities_.try_push_back(constraint);
     lower_.priced_bound[p] = -kInfinity<Scalar>;
     upper_.priced_bound[p] = kInfinity<Scalar>;
   }
+}
+
+// Bounds of a variable may be set anew.
+template <class Scalar>
+void DenseRows<Scalar>::forget_equality(int constraint) SOPT_RT {
+  auto* const known = std::find(equalities_.begin(), equalities_.end(), constraint);
+  if (known == equalities_.end()) return;
+  std::copy(known + 1, equalities_.end(), known);
+  (void)equalities_.try_resize(equalities_.size() - 1);
 }
 
 template <class Scalar>
@@ -286,14 +309,17 @@ Scalar DenseRows<Scalar>::size_of_terms(int id) const SOPT_RT {
 template <class Scalar>
 int DenseRows<Scalar>::most_violated(Scalar tolerance) const SOPT_RT {
   using Vector = typename VectorOf<Scalar>::Type;
-  Vector worst = Vector{} + tolerance;
+  Vector worst{};
   Vector worst_at = Vector{} - Scalar(1);
   const auto price = [&](int p, const Vector& value) {
-    const Vector below =
-        (load_vector(&lower_.priced_bound[p]) - value) * load_vector(&lower_.scale[p]);
-    const Vector above =
-        (value - load_vector(&upper_.priced_bound[p])) * load_vector(&upper_.scale[p]);
-    const Vector excess = below > above ? below : above;
+    const Vector below = load_vector(&lower_.priced_bound[p]) - value;
+    const Vector above = value - load_vector(&upper_.priced_bound[p]);
+    const Vector violated_below =
+        below * load_vector(&lower_.scale[p]) > tolerance ? below : Vector{};
+    const Vector violated_above =
+        above * load_vector(&upper_.scale[p]) > tolerance ? above : Vector{};
+    const Vector violated = violated_below > violated_above ? violated_below : violated_above;
+    const Vector excess = violated * violated * load_vector(&price_[p]);
     worst_at = excess > worst ? Vector{} + static_cast<Scalar>(p) : worst_at;
     worst = excess > worst ? excess : worst;
   };

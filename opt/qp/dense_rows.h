@@ -5,7 +5,8 @@
 //     gram(i,k) = y_i . y_k        x(lambda) = R^-1 (sum lambda_i y_i - R^-T f)
 // n^3/6 for the factor, n^2/2 per entering row (bounds: from their variable on), and per pricing
 // pass the nonzero stretches of A, a vector of rows at a time. Rows are scaled to unit length, and
-// to unit bounds where those are longer, so that one tolerance fits all of them. docs/qp.md, 4.
+// to unit bounds where those are longer, so that one tolerance fits all of them, and priced by
+// violation^2 / sum a_j^2 / H_jj, an estimate of their gram entry. docs/qp.md, 5.
 //
 // Constraint c in [0, m) is a row, m + j the bounds of variable j. Ids are [equality constraints]
 // [lower, upper of every constraint]; a constraint with lower == upper is an equality. Infinite
@@ -45,7 +46,8 @@ class DenseRows {
   void reset(const Scalar* gradient) SOPT_RT;
 
   // Adds lower <= a . x <= upper, a of n entries. A row without a finite bound is carried along
-  // unscaled, for SumRows. False when the rows are full.
+  // unscaled, for SumRows; one whose squared length underflows counts as zeros. False when the rows
+  // are full.
   [[nodiscard]] bool try_add(const Scalar* a, Scalar lower, Scalar upper) SOPT_RT;
   // After all rows; the last bounds of a variable count.
   void set_bounds(int variable, Scalar lower, Scalar upper) SOPT_RT;
@@ -132,6 +134,8 @@ class DenseRows {
   void update_row_values() SOPT_RT;
   void clear_constraints(int first, int last) SOPT_RT;
   void set_constraint(int constraint, Scalar lower, Scalar upper, Scalar length) SOPT_RT;
+  void forget_equality(int constraint) SOPT_RT;
+  void set_price(int constraint, Scalar gram) SOPT_RT;
 
   // One side of all constraints, by position.
   struct Sides {
@@ -156,10 +160,12 @@ class DenseRows {
   FixedVector<Stretch> stretch_;   // of groups
   FixedVector<Scalar> row_value_;  // a . x
   Sides lower_, upper_;
-  FixedVector<Scalar> softness_;  // by position
-  FixedVector<int> slot_;         // of y while entered, by position and side
-  FixedVector<int> equalities_;   // constraints
-  FixedVector<Scalar> y_;         // slots x n: scale sign R^-T a
+  FixedVector<Scalar> inverse_diagonal_;  // n: 1 / H_jj
+  FixedVector<Scalar> price_;             // by position: 1 / sum a_j^2 / H_jj
+  FixedVector<Scalar> softness_;          // by position
+  FixedVector<int> slot_;                 // of y while entered, by position and side
+  FixedVector<int> equalities_;           // constraints
+  FixedVector<Scalar> y_;                 // slots x n: scale sign R^-T a
   FixedVector<int> free_slots_;
   // Of n numbers, padded, as is y:
   FixedVector<Scalar> base_;  // -R^-T f

@@ -4,9 +4,9 @@
 //     enters:   [  T            .       ]      leaves at p: rows p.. are rotated in pairs until
 //               [ -r'/sqrt(s)  1/sqrt(s)]      column p is left in the last one; both go
 // Products with T have no chain of dependent operations as substitution with L has, and an entering
-// row costs no arithmetic but its direction: about 4 times faster at 30 rows. What the explicit
-// inverse loses in accuracy, at most a factor of the condition of L, the solver's refinement gives
-// back. O(q^2) for solves and leaving, with q rows.
+// row costs no arithmetic but its direction (docs/qp.md, 2). What the explicit inverse loses in
+// accuracy, at most a factor of the condition of L, the solver's refinement gives back. O(q^2) for
+// solves and leaving, with q rows.
 #pragma once
 
 #include "alloc/fixed_vector.h"

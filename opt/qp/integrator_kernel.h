@@ -9,7 +9,8 @@
 // and one forward sweep of the Riccati recursion with a free end, then moved onto the fixed end by
 // the response to end forces: O(n), no matrix. Tables of G_n, built by the same sweeps, give its
 // entries for n <= max_table; longer segments sweep a column per row that becomes active.
-// docs/qp.md, 3.
+// docs/qp.md, 4. Deviation: [Leu22 III-B] condenses every segment to a dense QP in its inputs; here
+// the Hessian is never formed and costs nothing per segment.
 //
 // Quantities: 0 position, 1 velocity, 2 acceleration; the last one of the order is the input, with
 // n values; the others have n + 1. A profile lists them all: index quantity (n + 1) + t.
@@ -32,7 +33,7 @@ class IntegratorKernel {
  public:
   IntegratorKernel() noexcept = default;
   // order 1: velocity input, 2: acceleration input. Segments of up to max_window steps, tables for
-  // up to max_table (about 5 MB for order 2 and 60 in double precision).
+  // up to max_table (5.6 MB for order 2 and 60 in double precision).
   IntegratorKernel(Arena& arena, int order, const IntegratorWeights& weights, int max_window,
                    int max_table) noexcept;
 

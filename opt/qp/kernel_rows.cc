@@ -22,14 +22,11 @@ KernelRows<Scalar, kLanes>::KernelRows(Arena& arena, const IntegratorKernel<Scal
   const int num_groups = capacity.max_rows / kGroup + profile;
   groups_ = {arena, num_groups};
   group_index_ = {arena, num_groups};
-  row_bound_ = {arena, kGroup * num_groups};
   row_value_ = {arena, kGroup * num_groups};
-  for (auto* bounds : {&lower_, &upper_, &priced_lower_, &priced_upper_}) {
+  for (auto* bounds : {&lower_, &upper_}) {
     *bounds = {arena, kLanes * profile};
     (void)bounds->try_resize(bounds->capacity());
   }
-  price_ = {arena, profile};
-  (void)price_.try_resize(price_.capacity());
   for (auto* values : {&force_, &value_, &step_}) {
     *values = {arena, kLanes * profile};
     (void)values->try_resize(values->capacity());
@@ -43,12 +40,15 @@ KernelRows<Scalar, kLanes>::KernelRows(Arena& arena, const IntegratorKernel<Scal
   for (int i = free_slots_.capacity() - 1; i >= 0; --i) (void)free_slots_.try_push_back(i);
   slot_ = {arena, kGroup * num_groups + 2 * kLanes * profile};
   (void)slot_.try_resize(slot_.capacity());
-  std::fill(slot_.begin(), slot_.end(), std::int16_t(-1));
+  std::fill(slot_.begin(), slot_.end(), -1);
   if (capacity.max_window > kernel.max_table()) {
     columns_ = {arena, num_slots * profile};
     (void)columns_.try_resize(columns_.capacity());
     own_end_response_ = {arena, kernel.order() * profile};
     (void)own_end_response_.try_resize(own_end_response_.capacity());
+    own_price_ = {arena, profile};
+    (void)own_price_.try_resize(own_price_.capacity());
+    std::fill(own_price_.begin(), own_price_.end(), Scalar(1));
   }
 }
 
@@ -60,7 +60,6 @@ void KernelRows<Scalar, kLanes>::reset(const KernelSegment<Scalar>& segment) SOP
   not_finite_ = 0;
   groups_.clear();
   group_index_.clear();
-  row_bound_.clear();
   row_value_.clear();
   row_ids_.clear();
   std::fill(std::begin(has_bounds_), std::end(has_bounds_), false);
@@ -88,13 +87,13 @@ void KernelRows<Scalar, kLanes>::reset(const KernelSegment<Scalar>& segment) SOP
   ends_.last_velocity = load(segment.last_velocity, 0);
   ends_.attractor = load(segment.attractor, 0);
   factors_ = load(segment.factors, 1);
-  inverse_factors_ = {};
-  for (int j = 0; j < num_joints_; ++j) {
-    Scalar r[kLanes];
-    factors_.store(r);
-    if (!(r[j] > Scalar(0))) not_finite_ = std::numeric_limits<Scalar>::quiet_NaN();
-    inverse_factors_.set(j, Scalar(1) / r[j]);
-    joint_price_.set(j, std::sqrt(r[j]));
+  Scalar r[kLanes];
+  factors_.store(r);
+  for (int j = 0; j < kLanes; ++j) {
+    const bool is_joint = j < num_joints_;
+    if (is_joint && !(r[j] > Scalar(0))) not_finite_ = std::numeric_limits<Scalar>::quiet_NaN();
+    inverse_factor_[j] = is_joint ? Scalar(1) / r[j] : Scalar(0);
+    joint_price_.set(j, is_joint ? std::sqrt(r[j]) : Scalar(0));
   }
   load_kernel();
 }
@@ -106,12 +105,11 @@ void KernelRows<Scalar, kLanes>::load_kernel() SOPT_RT {
   if (!has_table_) {
     kernel_->compute_end_response(n, own_end_response_.begin());
     end_response_ = own_end_response_.begin();
-    std::fill(price_.begin(), price_.begin() + profile_size_, Scalar(1));
+    price_ = own_price_.begin();
     return;
   }
   end_response_ = kernel_->table_end_response(n);
-  const Scalar* const price = kernel_->table_price(n);
-  std::copy(price, price + profile_size_, price_.begin());
+  price_ = kernel_->table_price(n);
 }
 
 template <class Scalar, int kLanes>
@@ -120,34 +118,35 @@ bool KernelRows<Scalar, kLanes>::try_add(Quantity quantity, int t, const Scalar*
   if (profile_size_ == 0) return true;
   const int index = index_of(quantity, t);
   if (row_ids_.size() == row_ids_.capacity()) return false;
-  if (num_in_group_ == kGroup || groups_.empty() || group_index_.back() != index) {
-    if (groups_.size() == groups_.capacity()) return false;
-    (void)groups_.try_push_back({});
-    (void)group_index_.try_push_back(index);
-    std::fill_n(groups_.back().priced_bound, kGroup, -kFar<Scalar>);
-    (void)row_bound_.try_resize(num_padded());
-    (void)row_value_.try_resize(num_padded());
-    std::fill(row_bound_.end() - kGroup, row_bound_.end(), -kFar<Scalar>);
-    num_in_group_ = 0;
-  }
+  const bool fits = num_in_group_ < kGroup && !groups_.empty() && group_index_.back() == index;
+  if (!fits && !try_begin_group(index)) return false;
   Group& group = groups_.back();
-  Scalar r_norm2 = 0;
-  Scalar inverse_factors[kLanes];
-  inverse_factors_.store(inverse_factors);
+  const int place = num_in_group_++;
+  Scalar norm2 = 0;
   for (int j = 0; j < num_joints_; ++j) {
-    group.direction[j][num_in_group_] = direction[j];
-    r_norm2 += direction[j] * direction[j] * inverse_factors[j];
+    group.direction[j][place] = direction[j];
+    norm2 += direction[j] * direction[j] * inverse_factor_[j];
   }
   // No bound at all is fine.
   const Scalar checked = bound == -std::numeric_limits<Scalar>::infinity() ? Scalar(0) : bound;
-  not_finite_ += Scalar(0) * (r_norm2 + checked);
-  bound = std::max(bound, -kFar<Scalar>);
-  group.priced_bound[num_in_group_] = bound;
-  group.price[num_in_group_] = r_norm2 > Scalar(0) ? price_[index] / std::sqrt(r_norm2) : Scalar(1);
-  const int id = num_padded() - kGroup + num_in_group_;
-  row_bound_[id] = bound;
-  (void)row_ids_.try_push_back(id);
-  ++num_in_group_;
+  not_finite_ += Scalar(0) * (norm2 + checked);
+  group.priced_bound[place] = std::max(bound, -kFar<Scalar>);
+  group.price[place] = norm2 > Scalar(0) ? price_[index] / std::sqrt(norm2) : Scalar(1);
+  (void)row_ids_.try_push_back(num_padded() - kGroup + place);
+  return true;
+}
+
+// Opens a group whose rows hold until they are filled in.
+template <class Scalar, int kLanes>
+bool KernelRows<Scalar, kLanes>::try_begin_group(int index) SOPT_RT {
+  if (!groups_.try_resize(groups_.size() + 1)) return false;
+  (void)group_index_.try_push_back(index);
+  (void)row_value_.try_resize(num_padded());
+  Group& group = groups_.back();
+  std::fill_n(&group.direction[0][0], kLanes * kGroup, Scalar(0));
+  std::fill_n(group.priced_bound, kGroup, -kFar<Scalar>);
+  std::fill_n(group.price, kGroup, Scalar(0));
+  num_in_group_ = 0;
   return true;
 }
 
@@ -156,37 +155,48 @@ void KernelRows<Scalar, kLanes>::set_bounds(Quantity quantity, int first_t, int 
                                             const Scalar* lower, const Scalar* upper) SOPT_RT {
   if (profile_size_ == 0) return;
   constexpr Scalar kInfinity = std::numeric_limits<Scalar>::infinity();
-  bool& has_bounds = has_bounds_[static_cast<int>(quantity)];
   const int begin = kLanes * index_of(quantity, 0);
+  bool& has_bounds = has_bounds_[static_cast<int>(quantity)];
   if (!has_bounds) {
-    const int end = begin + kLanes * (num_steps_ + 1);
-    for (auto* bounds : {&lower_, &priced_lower_}) {
-      std::fill(bounds->begin() + begin, bounds->begin() + end, -kFar<Scalar>);
-    }
-    for (auto* bounds : {&upper_, &priced_upper_}) {
-      std::fill(bounds->begin() + begin, bounds->begin() + end, kFar<Scalar>);
-    }
+    const int size = kLanes * (num_steps_ + 1);
+    std::fill_n(lower_.begin() + begin, size, -kFar<Scalar>);
+    std::fill_n(upper_.begin() + begin, size, kFar<Scalar>);
     has_bounds = true;
   }
+  Scalar low[kLanes], high[kLanes];
+  std::fill_n(low, kLanes, -kFar<Scalar>);
+  std::fill_n(high, kLanes, kFar<Scalar>);
   for (int j = 0; j < num_joints_; ++j) {
     if (!(lower[j] < kInfinity) || !(upper[j] > -kInfinity)) {
       not_finite_ = std::numeric_limits<Scalar>::quiet_NaN();
     }
-    for (int t = first_t; t <= last_t; ++t) {
-      const int i = begin + kLanes * t + j;
-      lower_[i] = priced_lower_[i] = std::max(lower[j], -kFar<Scalar>);
-      upper_[i] = priced_upper_[i] = std::min(upper[j], kFar<Scalar>);
-    }
+    low[j] = std::max(lower[j], -kFar<Scalar>);
+    high[j] = std::min(upper[j], kFar<Scalar>);
   }
+  const Joints low_joints = Joints::load(low);
+  const Joints high_joints = Joints::load(high);
+  for (int t = first_t; t <= last_t; ++t) {
+    low_joints.store(lower_.begin() + begin + kLanes * t);
+    high_joints.store(upper_.begin() + begin + kLanes * t);
+  }
+}
+
+// What the row must keep, one-sided.
+template <class Scalar, int kLanes>
+Scalar KernelRows<Scalar, kLanes>::bound_of(int id) const SOPT_RT {
+  if (slot_[id] >= 0) return entered_[slot_[id]].bound;
+  if (id < num_padded()) return groups_[id / kGroup].priced_bound[id % kGroup];
+  const int i = (id - num_padded()) / 2;
+  return (id - num_padded()) % 2 == 1 ? -upper_[i] : lower_[i];
 }
 
 template <class Scalar, int kLanes>
 typename KernelRows<Scalar, kLanes>::Row KernelRows<Scalar, kLanes>::row_of(int id) const SOPT_RT {
   Row row;
+  row.bound = bound_of(id);
   if (id < num_padded()) {
     const Group& group = groups_[id / kGroup];
     row.index = group_index_[id / kGroup];
-    row.bound = row_bound_[id];
     for (int j = 0; j < num_joints_; ++j) row.direction.set(j, group.direction[j][id % kGroup]);
     return row;
   }
@@ -194,7 +204,6 @@ typename KernelRows<Scalar, kLanes>::Row KernelRows<Scalar, kLanes>::row_of(int 
   const bool is_upper = (id - num_padded()) % 2 == 1;
   row.index = i / kLanes;
   row.direction.set(i % kLanes, is_upper ? Scalar(-1) : Scalar(1));
-  row.bound = is_upper ? -upper_[i] : lower_[i];
   return row;
 }
 
@@ -206,9 +215,9 @@ void KernelRows<Scalar, kLanes>::set_priced_bound(int id, Scalar bound) SOPT_RT 
   }
   const int i = (id - num_padded()) / 2;
   if ((id - num_padded()) % 2 == 1) {
-    priced_upper_[i] = -bound;
+    upper_[i] = -bound;
   } else {
-    priced_lower_[i] = bound;
+    lower_[i] = bound;
   }
 }
 
@@ -220,20 +229,19 @@ bool KernelRows<Scalar, kLanes>::is_free(int id) const SOPT_RT {
   const int i = (id - num_padded()) / 2;
   const int quantity = i / (kLanes * (num_steps_ + 1));
   if (!has_bounds_[quantity]) return false;
-  return (id - num_padded()) % 2 == 1 ? priced_upper_[i] < kFar<Scalar>
-                                      : priced_lower_[i] > -kFar<Scalar>;
+  return (id - num_padded()) % 2 == 1 ? upper_[i] < kFar<Scalar> : lower_[i] > -kFar<Scalar>;
 }
 
 template <class Scalar, int kLanes>
 void KernelRows<Scalar, kLanes>::enter(int id) SOPT_RT {
   const int slot = free_slots_.back();
   (void)free_slots_.try_resize(free_slots_.size() - 1);
-  slot_[id] = static_cast<std::int16_t>(slot);
   const Row row = row_of(id);
+  slot_[id] = slot;
   Entered& entered = entered_[slot];
   entered.index = row.index;
   entered.direction = row.direction;
-  entered.weighted = row.direction * inverse_factors_;
+  entered.weighted = row.direction * Joints::load(inverse_factor_);
   entered.bound = row.bound;
   if (has_table_) {
     entered.column = kernel_->table_column(num_steps_, row.index);
@@ -326,10 +334,9 @@ void KernelRows<Scalar, kLanes>::add_step() SOPT_RT {
 
 template <class Scalar, int kLanes>
 Scalar KernelRows<Scalar, kLanes>::violation(int id) const SOPT_RT {
-  if (id < num_padded()) return row_bound_[id] - row_value_[id];
-  const int i = (id - num_padded()) / 2;
-  const bool is_upper = (id - num_padded()) % 2 == 1;
-  return is_upper ? value_[i] - upper_[i] : lower_[i] - value_[i];
+  if (id < num_padded()) return bound_of(id) - row_value_[id];
+  const Scalar value = value_[(id - num_padded()) / 2];
+  return bound_of(id) + ((id - num_padded()) % 2 == 1 ? value : -value);
 }
 
 template <class Scalar, int kLanes>
@@ -384,8 +391,8 @@ int KernelRows<Scalar, kLanes>::most_violated_bound(Scalar tolerance, int best,
       for (int part = 0; part < Joints::kParts; ++part) {
         const int at = kLanes * i + kWidth * part;
         const Part value = load_vector(value_.begin() + at);
-        const Part below = load_vector(priced_lower_.begin() + at) - value;
-        const Part above = value - load_vector(priced_upper_.begin() + at);
+        const Part below = load_vector(lower_.begin() + at) - value;
+        const Part above = value - load_vector(upper_.begin() + at);
         const Part excess =
             ((below > above ? below : above) - tolerance) * price_[i] * joint_price_.part[part];
         worst_index[part] =
@@ -399,7 +406,7 @@ int KernelRows<Scalar, kLanes>::most_violated_bound(Scalar tolerance, int best,
     if (!(excess > best_value)) continue;
     best_value = excess;
     const int at = kLanes * static_cast<int>(worst_index[joint / kWidth][joint % kWidth]) + joint;
-    const bool is_upper = value_[at] - priced_upper_[at] > priced_lower_[at] - value_[at];
+    const bool is_upper = value_[at] - upper_[at] > lower_[at] - value_[at];
     best = num_padded() + 2 * at + (is_upper ? 1 : 0);
   }
   return best;

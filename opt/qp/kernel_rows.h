@@ -5,7 +5,7 @@
 // joint j is r_j times the kernel's):
 //     gram(i,k) = G_n((q_i,t_i),(q_k,t_k)) sum_j a_ij a_kj / r_j
 //     quantities(lambda) = one O(n) sweep under the forces lambda_i a_i / r
-// Rows and bounds are priced by violation / sqrt(gram). docs/qp.md, 3.
+// Rows and bounds are priced by violation / sqrt(gram). docs/qp.md, 4.
 //
 // Ids: rows in the order of try_add, padded to groups (row_id says which), then the bounds.
 // kLanes joints are computed at a time: 4 or 8.
@@ -132,6 +132,8 @@ class KernelRows {
   [[nodiscard]] int index_of(Quantity quantity, int t) const SOPT_RT {
     return static_cast<int>(quantity) * (num_steps_ + 1) + t;
   }
+  [[nodiscard]] bool try_begin_group(int index) SOPT_RT;
+  [[nodiscard]] Scalar bound_of(int id) const SOPT_RT;
   [[nodiscard]] Row row_of(int id) const SOPT_RT;
   void load_kernel() SOPT_RT;
   void update_row_values() SOPT_RT;
@@ -149,25 +151,24 @@ class KernelRows {
   Scalar softness_ = 0;
   Scalar not_finite_ = 0;  // NaN once some number was not finite
   typename IntegratorKernel<Scalar>::template Ends<kLanes> ends_;
-  Joints factors_{};          // r
-  Joints inverse_factors_{};  // 1 / r
-  Joints joint_price_{};      // sqrt(r)
+  Joints factors_{};                    // r
+  Scalar inverse_factor_[kLanes] = {};  // 1 / r, 0 beyond the joints
+  Joints joint_price_{};                // sqrt(r)
   const Scalar* end_response_ = nullptr;
+  const Scalar* price_ = nullptr;  // profile: 1 / sqrt(G_ii)
   FixedVector<Group> groups_;
   FixedVector<int> group_index_;   // in profiles
-  FixedVector<Scalar> row_bound_;  // of padded rows
   FixedVector<Scalar> row_value_;  // of padded rows, direction . quantity(t)
   FixedVector<int> row_ids_;
-  FixedVector<Scalar> lower_, upper_;                // profile x kLanes
-  FixedVector<Scalar> priced_lower_, priced_upper_;  // profile x kLanes
-  bool has_bounds_[3] = {};                          // of each quantity
-  FixedVector<Scalar> price_;                        // profile
-  FixedVector<Scalar> force_, value_, step_;         // profile x kLanes
-  FixedVector<Entered> entered_;                     // slots
+  FixedVector<Scalar> lower_, upper_;         // profile x kLanes, far away for entered bounds
+  bool has_bounds_[3] = {};                   // of each quantity
+  FixedVector<Scalar> force_, value_, step_;  // profile x kLanes
+  FixedVector<Entered> entered_;              // slots
   FixedVector<int> free_slots_;
-  FixedVector<std::int16_t> slot_;        // of ids that are entered
+  FixedVector<int> slot_;                 // of ids that are entered; -1: not
   FixedVector<Scalar> columns_;           // slots x profile, segments without table
   FixedVector<Scalar> own_end_response_;  // order x profile, segments without table
+  FixedVector<Scalar> own_price_;         // ones, segments without table
 };
 
 extern template class KernelRows<double, 4>;

@@ -6,7 +6,7 @@
 //     z(lambda) = line from z(0) to z(n) + sum_i lambda_i a_i G(t_i, .)
 // The last line is a polyline whose slope changes by -lambda_i a_i at t_i: O(n + active). Rows lie
 // in time order, in groups of four per waypoint padded by rows that always hold, so pricing reads
-// each waypoint once per group. Rows are priced by violation / sqrt(G(t,t)). docs/qp.md, 2.
+// each waypoint once per group. Rows are priced by violation / sqrt(G(t,t)). docs/qp.md, 3.
 #pragma once
 
 #include <span>

@@ -9,10 +9,9 @@ namespace sopt {
 
 enum class QpStatus : std::int8_t {
   kOptimal = 0,
-  kNotSolved = -1,  // default
-  kInfeasible =
-      -2,           // rows contradict each other: blocking_row cannot hold together with the others
-  kStepLimit = -3,  // max_steps working-set changes were not enough
+  kNotSolved = -1,   // default
+  kInfeasible = -2,  // blocking_row cannot hold together with the others
+  kStepLimit = -3,   // max_steps working-set changes were not enough
   kDeadline = -4,
   kCapacity = -5,    // more active rows than the workspace holds
   kInaccurate = -6,  // rounding: rows hold to primal_residual only, or steps made no progress

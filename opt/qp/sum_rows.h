@@ -2,7 +2,7 @@
 // (DenseRows) and the arm on it (KernelRows):
 //     gram(i,k) = gram_base(i,k) + gram_arm(i,k),   violation = b - a_base . x_base - a_arm . x_arm
 // Rows and bounds of one part alone stay in that part; a coupled row names a row without bound in
-// each (docs/qp.md, 5). Ids: [base] [arm] [coupled].
+// each (docs/qp.md, 6). Ids: [base] [arm] [coupled].
 #pragma once
 
 #include <span>

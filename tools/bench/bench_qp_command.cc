@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@
 #include "tools/bench/bench_report.h"
 #include "tools/cli/option_checks.h"
 #include "tools/io/file_list.h"
+#include "tools/io/input_error.h"
+#include "tools/io/json_fields.h"
 #include "tools/io/json_text.h"
 #include "tools/io/output_file.h"
 #include "tools/io/qp_file.h"
@@ -37,9 +40,11 @@ struct BenchQpArguments {
 };
 
 std::string check_families(const std::string& text) {
-  const bool is_known =
-      !text.empty() && text.find_first_not_of(all_families()) == std::string::npos;
-  return is_known ? "" : "families are letters of " + all_families();
+  const std::set<char> letters(text.begin(), text.end());
+  const bool is_known = text.find_first_not_of(all_families()) == std::string::npos;
+  if (!text.empty() && is_known && letters.size() == text.size()) return "";
+  return '"' + printable(text) + "\" is not allowed; it must be different letters of " +
+         all_families();
 }
 
 // What two readings in a row differ by; part of every time.
@@ -80,15 +85,21 @@ int run_families(const BenchQpArguments& arguments, const Clock& clock) {
   std::vector<std::filesystem::path> scenes;
   if (arguments.families.find(kRecordedFamily) != std::string::npos) {
     scenes = given_or_shipped_scenes(arguments.scenes);
+  } else if (!arguments.scenes.empty()) {
+    throw InputError("--scenes: only family p plans scenes, and --families is " +
+                     arguments.families);
   }
   check_paths(arguments, scenes);
+  std::vector<QpFamily> problems;
+  for (const char name : arguments.families) {
+    problems.push_back(name == kRecordedFamily
+                           ? make_recorded_family(scenes, arguments.seed)
+                           : make_qp_family(name, arguments.num_problems, arguments.seed));
+  }
   const double clock_us = clock_cost_us(clock);
   print_setup(arguments, clock_us);
   std::vector<BenchQpFamily> families;
-  for (const char name : arguments.families) {
-    const QpFamily family = name == kRecordedFamily
-                                ? make_recorded_family(scenes, arguments.seed)
-                                : make_qp_family(name, arguments.num_problems, arguments.seed);
+  for (const QpFamily& family : problems) {
     families.push_back(run_bench_qp(family, arguments.num_repeats, clock));
     (void)std::fputs(describe(families.back()).c_str(), stdout);
   }
@@ -112,11 +123,13 @@ int run_families(const BenchQpArguments& arguments, const Clock& clock) {
 int run_files(const BenchQpArguments& arguments, const Clock& clock) {
   const std::vector<std::filesystem::path> inputs = list_files(arguments.files, ".qp");
   check_paths(arguments, inputs);
+  std::vector<QpProblem> problems;
+  for (const std::filesystem::path& input : inputs) problems.push_back(load_qp(input));
   const double clock_us = clock_cost_us(clock);
   print_setup(arguments, clock_us);
   std::vector<BenchQpFile> files;
-  for (const std::filesystem::path& input : inputs) {
-    files.push_back(bench_qp_file(load_qp(input), arguments.num_repeats, clock));
+  for (const QpProblem& problem : problems) {
+    files.push_back(bench_qp_file(problem, arguments.num_repeats, clock));
   }
   (void)std::fputs(describe(files).c_str(), stdout);
   if (!arguments.json_file.empty()) {
@@ -144,7 +157,8 @@ void add_bench_qp_command(CLI::App& bench, int& exit_code) {
           ->add_option("--files", arguments->files,
                        "Instead of families: problems in the QP1 format, or folders of *.qp, each "
                        "against Cholesky of H and triangular solve of A")
-          ->type_name("FILE|DIR");
+          ->type_name("FILE|DIR")
+          ->check(file_check());
   command
       ->add_option(
           "--families", arguments->families,
@@ -157,6 +171,7 @@ void add_bench_qp_command(CLI::App& bench, int& exit_code) {
           "--scenes", arguments->scenes,
           std::string("Scene files or folders of them that p plans [") + kShippedScenes + ']')
       ->type_name("FILE|DIR")
+      ->check(file_check())
       ->excludes(files);
   command->add_option("--problems", arguments->num_problems, "Pairs per generated family [40]")
       ->type_name("N")

@@ -2,22 +2,19 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <span>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "alloc/arena.h"
 #include "alloc/memory_block.h"
 #include "opt/qp/active_set_qp.h"
-#include "opt/qp/point_rows.h"
+#include "tools/bench/bench_qp_spaces.h"
 #include "tools/io/input_error.h"
 
 namespace sopt {
 namespace {
 
-constexpr int kMaxTable = 60;  // steps; longer segments sweep
 constexpr int kMaxSteps = 10000;
 
 // Largest of every size.
@@ -61,7 +58,6 @@ std::size_t required_bytes(const Settings& settings) {
   return arena.used_B();
 }
 
-// Spaces own the row spaces: load() fills them from a problem, rows() is what is solved.
 template <class Space>
 class SpaceSolver : public BenchQpSolver {
  public:
@@ -75,7 +71,9 @@ class SpaceSolver : public BenchQpSolver {
     if (arena_.exhausted()) throw HostError("no memory for the QPs");
   }
 
-  void prepare(const BenchQpProblem& problem) override { parts_.space.prepare(problem); }
+  void prepare(const BenchQpProblem& problem) override {
+    if constexpr (requires { parts_.space.prepare(problem); }) parts_.space.prepare(problem);
+  }
 
   BenchQpOutcome solve(const BenchQpProblem& problem, bool is_warm) override {
     if (!parts_.space.load(problem)) return {QpStatus::kCapacity};
@@ -104,7 +102,6 @@ class SpaceSolver : public BenchQpSolver {
   [[nodiscard]] std::vector<double> inputs() const override { return parts_.space.inputs(); }
 
  private:
-  // Spaces whose pairs may have rows at other indices: row_id(i) of arm row i.
   static constexpr bool kHasRowIds = requires(const Space& space) { space.row_id(0); };
 
   // Of what was remembered, the rows that are in the partner too, by their index there.
@@ -153,62 +150,6 @@ class SpaceSolver : public BenchQpSolver {
   std::vector<Scalar> multipliers_;
 };
 
-struct DenseSettings {
-  DenseCapacity capacity;
-  bool is_factor_known;
-};
-
-class DenseSpace {
- public:
-  using Scalar = double;
-  using Settings = DenseSettings;
-
-  DenseSpace(Arena& arena, const Settings& settings)
-      : is_factor_known_(settings.is_factor_known), rows_(arena, settings.capacity) {}
-
-  void prepare(const BenchQpProblem& problem) {
-    if (is_factor_known_) (void)factorize(problem.condensed);
-  }
-
-  bool load(const BenchQpProblem& problem) {
-    const QpProblem& qp = problem.condensed;
-    if (!is_factor_known_ && !factorize(qp)) return false;
-    rows_.reset(qp.gradient.data());
-    first_row_ = qp.num_rows - static_cast<int>(problem.structured.arm.rows.size());
-    const double* row = qp.rows.data();
-    for (std::size_t i = 0; i < qp.row_lower.size(); ++i, row += qp.num_variables) {
-      if (!rows_.try_add(row, qp.row_lower[i], qp.row_upper[i])) return false;
-    }
-    for (std::size_t j = 0; j < qp.lower.size(); ++j) {
-      rows_.set_bounds(static_cast<int>(j), qp.lower[j], qp.upper[j]);
-    }
-    return true;
-  }
-
-  DenseRows<double>& rows() { return rows_; }
-  // Without coupled rows, those of the arm are last.
-  [[nodiscard]] int row_id(int i) const { return rows_.lower_id(first_row_ + i); }
-  [[nodiscard]] std::vector<double> inputs() const {
-    return {rows_.primal().begin(), rows_.primal().end()};
-  }
-
- private:
-  bool factorize(const QpProblem& qp) {
-    return rows_.factorize(qp.num_variables, qp.hessian.data());
-  }
-
-  bool is_factor_known_;
-  int first_row_ = 0;
-  DenseRows<double> rows_;
-};
-
-struct KernelSettings {
-  int order;
-  IntegratorWeights weights;
-  KernelCapacity capacity;
-  DenseCapacity base;
-};
-
 KernelSettings kernel_settings(const Sizes& sizes, const KernelPart<double>& part) {
   return {part.order,
           part.weights,
@@ -216,137 +157,11 @@ KernelSettings kernel_settings(const Sizes& sizes, const KernelPart<double>& par
           sizes.base};
 }
 
-// Inputs by time, after those of the base.
-template <class Rows>
-std::vector<double> collect_inputs(const Rows& rows, const SegmentQp& problem,
-                                   std::span<const double> base) {
-  std::vector<double> inputs;
-  const auto per_step = static_cast<std::size_t>(problem.base.num_inputs);
-  for (int t = 0; t < problem.arm.num_steps; ++t) {
-    const std::span<const double> own =
-        base.subspan(static_cast<std::size_t>(t) * per_step, per_step);
-    inputs.insert(inputs.end(), own.begin(), own.end());
-    const auto* const value = rows.value(problem.arm.input(), t);
-    for (int j = 0; j < problem.arm.num_joints; ++j) {
-      inputs.push_back(static_cast<double>(value[j]));
-    }
-  }
-  return inputs;
-}
-
-template <class ScalarType, int kLanes>
-class KernelSpace {
- public:
-  using Scalar = ScalarType;
-  using Settings = KernelSettings;
-
-  KernelSpace(Arena& arena, const Settings& settings)
-      : kernel_(arena, settings.order, settings.weights, settings.capacity.max_window, kMaxTable),
-        rows_(arena, kernel_, settings.capacity) {}
-
-  void prepare(const BenchQpProblem&) {}
-
-  bool load(const BenchQpProblem& problem) {
-    problem_ = &problem.structured;
-    if constexpr (std::is_same_v<Scalar, float>) {
-      return fill(problem.single, rows_);
-    } else {
-      return fill(problem.structured.arm, rows_);
-    }
-  }
-
-  KernelRows<Scalar, kLanes>& rows() { return rows_; }
-  [[nodiscard]] int row_id(int i) const { return rows_.row_id(i); }
-  [[nodiscard]] std::vector<double> inputs() const { return collect_inputs(rows_, *problem_, {}); }
-
- private:
-  const SegmentQp* problem_ = nullptr;
-  IntegratorKernel<Scalar> kernel_;
-  KernelRows<Scalar, kLanes> rows_;
-};
-
-template <int kLanes>
-class SumSpace {
- public:
-  using Scalar = double;
-  using Settings = KernelSettings;
-
-  SumSpace(Arena& arena, const Settings& settings)
-      : kernel_(arena, settings.order, settings.weights, settings.capacity.max_window, kMaxTable),
-        base_(arena, settings.base),
-        arm_(arena, kernel_, settings.capacity),
-        rows_(arena, base_, arm_, {settings.capacity.max_rows, settings.capacity.max_active}) {}
-
-  void prepare(const BenchQpProblem&) {}
-
-  bool load(const BenchQpProblem& problem) {
-    problem_ = &problem.structured;
-    return fill(problem.structured, base_, arm_, rows_);
-  }
-
-  SumRows<DenseRows<double>, KernelRows<double, kLanes>>& rows() { return rows_; }
-  [[nodiscard]] std::vector<double> inputs() const {
-    return collect_inputs(arm_, *problem_, base_.primal());
-  }
-
- private:
-  const SegmentQp* problem_ = nullptr;
-  IntegratorKernel<double> kernel_;
-  DenseRows<double> base_;
-  KernelRows<double, kLanes> arm_;
-  SumRows<DenseRows<double>, KernelRows<double, kLanes>> rows_;
-};
-
 // What PointRows is the closed form of.
 bool is_point(const KernelPart<double>& part) {
   return part.order == 1 && part.num_joints == 2 && part.weights.position == 0.0 &&
          part.weights.velocity == 1.0 && part.factors.empty() && part.bounds.empty();
 }
-
-struct PointSettings {
-  int max_window;
-  int max_rows;
-};
-
-class PointSpace {
- public:
-  using Scalar = double;
-  using Settings = PointSettings;
-
-  PointSpace(Arena& arena, const Settings& settings)
-      : rows_(arena, settings.max_window, settings.max_rows), ids_(arena, settings.max_rows) {}
-
-  void prepare(const BenchQpProblem&) {}
-
-  bool load(const BenchQpProblem& problem) {
-    const KernelPart<double>& part = problem.structured.arm;
-    rows_.reset(part.num_steps, Vec2(part.first_position.data()), Vec2(part.last_position.data()));
-    ids_.clear();
-    int id = -1;
-    for (const KernelRow<double>& row : part.rows) {
-      const int first_new = rows_.num_ids();
-      if (!rows_.try_add(row.t, Vec2(row.direction.data()), row.bound)) return false;
-      id = rows_.num_ids() > first_new ? first_new : id + 1;  // a group of its own, or the last
-      (void)ids_.try_push_back(id);
-    }
-    return true;
-  }
-
-  PointRows& rows() { return rows_; }
-  [[nodiscard]] int row_id(int i) const { return ids_[i]; }
-  [[nodiscard]] std::vector<double> inputs() const {
-    std::vector<double> inputs;
-    for (int t = 0; t < rows_.num_steps(); ++t) {
-      const Vec2 step = rows_.position(t + 1) - rows_.position(t);
-      inputs.insert(inputs.end(), step.begin(), step.end());
-    }
-    return inputs;
-  }
-
- private:
-  PointRows rows_;
-  FixedVector<int> ids_;  // of the arm's rows
-};
 
 }  // namespace
 
@@ -381,7 +196,7 @@ std::vector<std::unique_ptr<BenchQpSolver>> make_bench_solvers(
   const bool are_points = std::all_of(pairs.begin(), pairs.end(), [](const BenchQpPair& pair) {
     return is_point(pair.cold.structured.arm) && is_point(pair.warm.structured.arm);
   });
-  if (are_points) add.operator()<PointSpace>("point", {sizes.num_steps, sizes.num_rows});
+  if (are_points) add.operator()<PointSpace>("point", settings);
   return solvers;
 }
 
@@ -389,7 +204,7 @@ std::unique_ptr<BenchQpSolver> make_dense_solver(const QpProblem& problem) {
   // Equalities that follow from others, and fixed variables, are kept beside n independent rows.
   const int max_active = 2 * problem.num_variables + problem.num_equalities;
   const DenseCapacity capacity = {problem.num_variables, problem.num_rows, max_active};
-  return std::make_unique<SpaceSolver<DenseSpace>>("dense", DenseSettings{capacity, false},
+  return std::make_unique<SpaceSolver<DenseSpace>>("dense", DenseSpace::Settings{capacity, false},
                                                    max_active);
 }
 

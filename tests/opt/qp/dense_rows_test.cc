@@ -44,6 +44,12 @@ class DenseRowsTest : public ::testing::Test {
     const double length = qp_.normal(c).norm();
     return (is_upper ? -1.0 : 1.0) / std::max(length, std::abs(bound)) * qp_.normal(c);
   }
+  // What rows are compared by: violation^2 / sum a_j^2 / H_jj.
+  [[nodiscard]] double price(int id) const {
+    const double violation = std::max(0.0, rows_ids_->violation(id));
+    const Eigen::VectorXd a = scaled_row(id);
+    return violation * violation / a.cwiseAbs2().cwiseQuotient(qp_.h.diagonal()).sum();
+  }
   // Ids with a bound, not of equalities' sides.
   [[nodiscard]] std::vector<int> bounded_ids() const {
     std::vector<int> ids;
@@ -54,6 +60,23 @@ class DenseRowsTest : public ::testing::Test {
       if (std::isfinite(bound) && !is_side) ids.push_back(id);
     }
     return ids;
+  }
+  // Of at most 8 rows of a new random problem, weights up to 2.
+  struct Combination {
+    std::vector<int> ids;
+    std::vector<double> weights;
+    Eigen::VectorXd sum;
+  };
+  [[nodiscard]] Combination random_combination(Random& random, double lowest_weight) {
+    fill_random(random);
+    std::vector<int> ids = bounded_ids();
+    ids.resize(std::min<std::size_t>(ids.size(), 8));
+    Combination combination = {ids, {}, Eigen::VectorXd::Zero(qp_.num_variables())};
+    for (const int id : ids) {
+      combination.weights.push_back(random.uniform(lowest_weight, 2.0));
+      combination.sum += combination.weights.back() * scaled_row(id);
+    }
+    return combination;
   }
   void reset(int n, const std::vector<double>& gradient) {
     const Eigen::MatrixXd h = Eigen::MatrixXd::Identity(n, n);
@@ -132,16 +155,8 @@ TEST_F(DenseRowsTest, HasTheGramOfTheInverseHessian) {
 TEST_F(DenseRowsTest, MovesThePrimalAlongRows) {
   Random random(3);
   for (int round = 0; round < 50; ++round) {
-    fill_random(random);
-    std::vector<int> ids = bounded_ids();
-    ids.resize(std::min<std::size_t>(ids.size(), 8));
-    std::vector<double> weights;
-    Eigen::VectorXd force = Eigen::VectorXd::Zero(qp_.num_variables());
-    for (const int id : ids) {
-      rows_->enter(id);
-      weights.push_back(random.uniform(-2.0, 2.0));
-      force += weights.back() * scaled_row(id);
-    }
+    const auto [ids, weights, force] = random_combination(random, -2.0);
+    for (const int id : ids) rows_->enter(id);
     const Eigen::VectorXd step = qp_.h.llt().solve(force);
     const Eigen::VectorXd x = qp_.h.llt().solve(force - qp_.f);
     const double tol = 1e-11 * (1.0 + x.norm() + step.norm());
@@ -191,16 +206,20 @@ TEST_F(DenseRowsTest, FindsTheMostViolatedOfRowsNotEntered) {
     for (const int id : entered) rows_->enter(id);
     rows_->update_primal({}, {});
     double worst = 0.0;
+    double worst_price = 0.0;
     for (const int id : ids) {
       const bool is_priced = id >= rows_->num_equalities() &&
                              std::find(entered.begin(), entered.end(), id) == entered.end();
-      if (is_priced) worst = std::max(worst, rows_->violation(id));
+      if (!is_priced) continue;
+      worst = std::max(worst, rows_->violation(id));
+      worst_price = std::max(worst_price, price(id));
     }
     const int found = rows_->most_violated(0.0);
     // Pricing may add up in another order than violation() does.
     const double tol = 1e-12 * (1.0 + worst);
     if (found >= 0) {
-      EXPECT_NEAR(rows_->violation(found), worst, tol);
+      EXPECT_GT(rows_->violation(found), 0.0);
+      EXPECT_NEAR(price(found), worst_price, 1e-10 * (1.0 + worst_price));
     } else {
       EXPECT_LE(worst, tol);
     }
@@ -263,15 +282,7 @@ TEST_F(DenseRowsTest, ForgetsRowsBoundsAndEqualitiesAtReset) {
 TEST_F(DenseRowsTest, WritesMultipliersInTheUnitsOfTheProblem) {
   Random random(5);
   for (int round = 0; round < 50; ++round) {
-    fill_random(random);
-    std::vector<int> ids = bounded_ids();
-    ids.resize(std::min<std::size_t>(ids.size(), 8));
-    std::vector<double> weights;
-    Eigen::VectorXd force = Eigen::VectorXd::Zero(qp_.num_variables());
-    for (const int id : ids) {
-      weights.push_back(random.uniform(0.0, 2.0));
-      force += weights.back() * scaled_row(id);
-    }
+    const auto [ids, weights, force] = random_combination(random, 0.0);
     Eigen::VectorXd out = Eigen::VectorXd::Constant(qp_.num_constraints(), 7.0);
     rows_->write_multipliers(ids, weights, out.data());
     const Eigen::VectorXd sum =

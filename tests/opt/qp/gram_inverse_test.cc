@@ -57,7 +57,7 @@ class GramInverseTest : public ::testing::Test {
     const int q = gram_->size();
     const Vector b = Vector::NullaryExpr(q, [&] { return Scalar(random.uniform(-1.0, 1.0)); });
     const Eigen::LLT<Eigen::MatrixXd> llt(expected());
-    const Eigen::VectorXd exact = b.template cast<double>();
+    const Eigen::VectorXd& exact = b.template cast<double>();
     const auto expect_near = [](const Vector& x, const Eigen::VectorXd& wanted) {
       EXPECT_LE((x.template cast<double>() - wanted).norm(), kTol * (1.0 + wanted.norm()));
     };

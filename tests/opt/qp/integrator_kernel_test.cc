@@ -78,9 +78,9 @@ struct Case {
 };
 
 // Names the cases in test listings.
-void PrintTo(const Case& c, std::ostream* out) {
-  *out << "order_" << c.order << "_weights_" << c.weights.position << "_" << c.weights.velocity
-       << "_" << c.weights.acceleration;
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+  return out << "order_" << c.order << "_weights_" << c.weights.position << "_"
+             << c.weights.velocity << "_" << c.weights.acceleration;
 }
 
 std::vector<Case> all_cases() {

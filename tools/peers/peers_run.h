@@ -1,0 +1,54 @@
+// The comparison itself: every peer on every scene with every seed. For one scene and seed all
+// peers follow each other, beginning with another one for each seed, so that a machine that gets
+// slower does so for all of them. Each path is then checked by World2's exact segment test.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/peers/peer.h"
+
+namespace sopt {
+
+struct PeersOptions {
+  int num_seeds = 16;          // 1..num_seeds
+  int num_slow_seeds = 2;      // of slow peers; at most num_seeds
+  double long_budget_s = 1.0;  // CPU time of RRT* with its whole budget
+};
+
+enum class PathVerdict {
+  kNotChecked,   // no solution, or its path is not known
+  kKeepsMargin,  // along every motion
+  kBelowMargin,  // somewhere, but nothing is touched
+  kCollides,     // the robot's disc meets an obstacle or leaves the bounds
+};
+
+// Rounding below a micrometre is not held against anybody.
+[[nodiscard]] PathVerdict check_path(const PeerProblem& problem, const std::vector<Vec2>& path);
+
+struct PeerCase {
+  std::string scene;
+  std::uint64_t seed = 0;
+  bool is_solved = false;
+  std::int64_t time_ns = 0;
+  std::int64_t num_allocations = 0;
+  double length_m = 0.0;
+  PathVerdict verdict = PathVerdict::kNotChecked;
+  std::string failure;  // as in PeerResult
+};
+
+struct PeerRun {
+  std::string peer;
+  std::vector<PeerCase> cases;
+};
+
+// One entry per peer, in their order. A run with the first seed warms up each peer that is not
+// slow and does not count. Throws what load_scene and the peers throw.
+[[nodiscard]] std::vector<PeerRun> run_peers(const std::vector<std::filesystem::path>& scenes,
+                                             const PeersOptions& options,
+                                             const std::vector<std::unique_ptr<Peer>>& peers);
+
+}  // namespace sopt
