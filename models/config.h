@@ -14,6 +14,32 @@ enum class SamplerMode : std::int8_t {
   kRrtStarConnect,  // a tree from each end; Deviation: no heavy tail in the time to a path
 };
 
+// Which linearised obstacles a window keeps [Leu22, Alg. 2].
+enum class RowMode : std::int8_t {
+  kEdge,      // all near an edge, on both of its waypoints; Deviation: clear between waypoints too
+  kWaypoint,  // all near a waypoint
+  kLabelMap,  // the nearest one of each waypoint: what the paper's watershed labels
+};
+
+// How a window's QP is solved; the solution is the same.
+enum class WindowSolver : std::int8_t {
+  kClosedForm,  // Deviation: the inverse Hessian is known in closed form, opt/qp/point_rows.h
+  kDense,       // condensed to the inputs and factorised in every window [Leu22, III-B]
+};
+
+enum class MergeRule : std::int8_t {
+  kOff,
+  kPaired,   // Deviation: keeps the parity of all other windows, see opt/splits.h
+  kPrinted,  // [Leu22, Alg. 1 l.13]: the end that two windows share goes
+};
+
+// What happens to the time axis as the path gets shorter.
+enum class Resampling : std::int8_t {
+  kOff,
+  kScale,         // Deviation: dt shrinks once, at the end; exact
+  kRediscretize,  // a new horizon after every sweep [Leu22, Alg. 1 l.16]
+};
+
 struct WorldCapacity {
   int max_obstacles = 8192;
   int max_vertices = 65536;  // of all obstacles together, each rounded up to a multiple of 4
@@ -27,6 +53,7 @@ struct PlannerSettings {
   int max_path_vertices = 1024;  // of a sampled path, >= 4
   int max_window = 60;           // steps of one optimisation window, >= 4
   int rows_per_window = 512;     // obstacle rows of one window's QP, at least; >= 0
+  bool dense_solver = false;     // room for WindowSolver::kDense
 
   [[nodiscard]] constexpr bool is_valid() const noexcept {
     return max_horizon >= 2 && num_streams >= 1 && num_streams <= kMaxStreams &&
@@ -51,12 +78,32 @@ struct PlanOptions {
   int num_streams = 0;      // 0: as many as the settings have
   bool shortcut = true;
   // --- optimiser
-  int num_segments = 0;  // 0: automatic, from the horizon
-  int max_window = 0;    // steps; 0: what the settings allow
-  bool merge = true;
-  bool time_scaling = true;
-  int max_iterations = 20;  // [Leu22, III-B termination (1)]
-  double tol_step = 1e-3;   // cost per step, see opt/optimizer.h
+  int num_segments = 0;       // 0: automatic, from the horizon
+  int steps_per_window = 50;  // what the automatic number aims at (docs/segments.md)
+  int max_window = 0;         // steps; 0: what the settings allow
+  MergeRule merge = MergeRule::kPaired;
+  Resampling resampling = Resampling::kScale;
+  RowMode rows = RowMode::kEdge;
+  WindowSolver solver = WindowSolver::kClosedForm;
+  bool accept = true;             // take only steps that pass the window check
+  bool zero_input_start = false;  // first sweep linearised about u = 0, as the paper begins
+  int max_iterations = 20;        // [Leu22, III-B termination (1)]
+  double tol_step = 1e-3;         // cost per step, see opt/segmented_optimizer.h
+
+  // The choices of [Leu22], each of which can be made alone. Needs PlannerSettings::dense_solver.
+  [[nodiscard]] static constexpr PlanOptions paper() noexcept {
+    PlanOptions options;
+    options.sampler = SamplerMode::kRrtStar;
+    options.shortcut = false;
+    options.steps_per_window = 30;
+    options.merge = MergeRule::kPrinted;
+    options.resampling = Resampling::kRediscretize;
+    options.rows = RowMode::kLabelMap;
+    options.solver = WindowSolver::kDense;
+    options.accept = false;
+    options.zero_input_start = true;
+    return options;
+  }
 };
 
 }  // namespace sopt

@@ -124,7 +124,7 @@ PlanResult<Robot> Planner<Robot>::plan(const PlanRequest<Robot>& request) SOPT_R
 template <class Robot>
 void Planner<Robot>::plan_into(Slot& slot, const PlanRequest<Robot>& request,
                                const Deadline& deadline, PlanResult<Robot>& result) SOPT_RT {
-  const double step_length = choose_step_length(request);
+  const double step_length = choose_step_length(robot_, *request.world, request.options);
   const MarginLadder ladder = make_ladder(request, step_length);
   std::int64_t stage_ns = clock_.now_ns();
   const auto lap_ns = [&] {
@@ -146,7 +146,9 @@ void Planner<Robot>::plan_into(Slot& slot, const PlanRequest<Robot>& request,
       optimizer_.optimize({&robot_, request.world, ladder[static_cast<std::size_t>(i_rung)],
                            step_length, &request.options},
                           slot.trajectory, deadline.earlier_by(reserve_s));
-  if (request.options.time_scaling) scale_time(robot_, reference_length, slot.trajectory);
+  if (request.options.resampling == Resampling::kScale) {
+    scale_time(robot_, reference_length, slot.trajectory);
+  }
   (void)fill_inputs(slot.trajectory);
   report_optimizer(optimized, result);
   result.times.optimize_ns = lap_ns();
@@ -159,6 +161,7 @@ void Planner<Robot>::plan_into(Slot& slot, const PlanRequest<Robot>& request,
   bool is_verified = try_verify(request, slot, result);
   if (!is_verified && make_plan_0(request, step_length, slot, result)) {
     // The optimiser's result was refused: plan 0 leaves instead, if it passes.
+    result.fell_back = true;
     result.cost = optimized.history.front().cost;
     result.path_length = optimized.history.front().path_length;
     is_verified = fill_inputs(slot.trajectory) && try_verify(request, slot, result);
@@ -167,15 +170,6 @@ void Planner<Robot>::plan_into(Slot& slot, const PlanRequest<Robot>& request,
   if (!is_verified) return;
   result.status = optimized.status == OptimizerStatus::kDeadline ? PlanStatus::kDeadlineFeasible
                                                                  : PlanStatus::kOk;
-}
-
-template <class Robot>
-double Planner<Robot>::choose_step_length(const PlanRequest<Robot>& request) const SOPT_RT {
-  const PlanOptions& options = request.options;
-  const double wanted = options.speed_mps > 0.0 ? options.speed_mps * options.dt_s
-                                                : robot_.default_step_length(*request.world);
-  constexpr double kRoundingGuard = 1.0 - 1e-12;  // dividing by dt must not round above v_max
-  return std::min(wanted, robot_.v_max_mps * options.dt_s * kRoundingGuard);
 }
 
 template <class Robot>
@@ -208,6 +202,10 @@ bool Planner<Robot>::check_request(const PlanRequest<Robot>& request,
        static_cast<double>(o.num_streams)},
       {o.num_segments >= 0 && o.num_segments <= settings_.max_horizon,
        "num_segments must be 0 or at most max_horizon", static_cast<double>(o.num_segments)},
+      {o.steps_per_window >= 2, "steps_per_window must be at least 2",
+       static_cast<double>(o.steps_per_window)},
+      {o.solver != WindowSolver::kDense || settings_.dense_solver,
+       "solver is kDense without PlannerSettings::dense_solver", 0.0},
       {o.max_window == 0 || (o.max_window >= 4 && o.max_window <= settings_.max_window),
        "max_window must be 0 or in [4, PlannerSettings::max_window]",
        static_cast<double>(o.max_window)},

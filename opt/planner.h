@@ -88,6 +88,7 @@ struct PlanResult {
   double path_length = 0.0;           // of the plan
   double cost = 0.0;                  // f of the plan, see opt/segmented_optimizer.h
   double margin_m = 0.0;              // rung x margin that was kept
+  bool fell_back = false;             // the optimiser's result was refused: plan 0 left
   int iterations = 0;
   int segments_initial = 0;
   int segments_final = 0;
@@ -136,7 +137,6 @@ class Planner {
                                    PlanResult<Robot>& result) const SOPT_RT;
   [[nodiscard]] bool check_end(const PlanRequest<Robot>& request, bool is_start,
                                PlanResult<Robot>& result) const SOPT_RT;
-  [[nodiscard]] double choose_step_length(const PlanRequest<Robot>& request) const SOPT_RT;
   [[nodiscard]] MarginLadder make_ladder(const PlanRequest<Robot>& request,
                                          double step_length) const SOPT_RT;
   void plan_into(Slot& slot, const PlanRequest<Robot>& request, const Deadline& deadline,

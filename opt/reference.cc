@@ -6,6 +6,15 @@
 namespace sopt {
 
 template <class Robot>
+double choose_step_length(const Robot& robot, const typename Robot::World& world,
+                          const PlanOptions& options) SOPT_RT {
+  const double wanted =
+      options.speed_mps > 0.0 ? options.speed_mps * options.dt_s : robot.default_step_length(world);
+  constexpr double kRoundingGuard = 1.0 - 1e-12;  // dividing by dt must not round above v_max
+  return std::min(wanted, robot.v_max_mps * options.dt_s * kRoundingGuard);
+}
+
+template <class Robot>
 bool make_reference(const Path<Robot>& path, double step_length, double dt_s,
                     Trajectory<Robot>& out) SOPT_RT {
   const auto& v = path.vertices;
@@ -26,6 +35,7 @@ bool make_reference(const Path<Robot>& path, double step_length, double dt_s,
   return true;
 }
 
+template double choose_step_length(const Point2&, const World2&, const PlanOptions&) SOPT_RT;
 template bool make_reference(const Path<Point2>&, double, double, Trajectory<Point2>&) SOPT_RT;
 
 }  // namespace sopt

@@ -5,11 +5,18 @@
 // Deviation: the paper starts from u = 0 with states from the path.
 #pragma once
 
+#include "models/config.h"
 #include "models/point2.h"
 #include "models/trajectory.h"
 #include "rt/annotations.h"
 
 namespace sopt {
+
+// Nominal length of a step in the robot's path metric: speed x dt, or the robot's default; at most
+// what v_max allows in dt.
+template <class Robot>
+[[nodiscard]] double choose_step_length(const Robot& robot, const typename Robot::World& world,
+                                        const PlanOptions& options) SOPT_RT;
 
 // Fills `out.states` and dt; steps have path length in [step_length / 2, step_length], but for
 // motions of the path shorter than half a step. At least 2 steps. False when the horizon exceeds
@@ -18,6 +25,7 @@ template <class Robot>
 [[nodiscard]] bool make_reference(const Path<Robot>& path, double step_length, double dt_s,
                                   Trajectory<Robot>& out) SOPT_RT;
 
+extern template double choose_step_length(const Point2&, const World2&, const PlanOptions&) SOPT_RT;
 extern template bool make_reference(const Path<Point2>&, double, double,
                                     Trajectory<Point2>&) SOPT_RT;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <new>
 
+#include "opt/rediscretize.h"
 #include "opt/time_scaling.h"
 
 namespace sopt {
@@ -15,9 +16,6 @@ constexpr double kFirstTrust_steps = 15.0;
 constexpr double kFirstTrust_m = 3.0;
 // Later sweeps: this many times the largest move of the sweep before, at least one nominal step.
 constexpr double kTrustGrowth = 2.0;
-
-// Steps per window that the automatic number of segments aims at (docs/RESULTS.md).
-constexpr int kStepsPerWindow = 50;
 
 bool failed(const WindowResult& result) noexcept {
   return result.status == WindowStatus::kNoRows || result.status == WindowStatus::kQpFailed ||
@@ -32,13 +30,24 @@ bool may_merge(const WindowResult& result) noexcept {
   return result.status == WindowStatus::kMoved || result.status == WindowStatus::kConverged;
 }
 
-int choose_num_segments(int wanted, int horizon, int max_window) noexcept {
-  const int automatic = std::max(2, (horizon + kStepsPerWindow - 1) / kStepsPerWindow);
-  const int fewest = (horizon + max_window - 1) / max_window;
-  return std::clamp(wanted == 0 ? automatic : wanted, fewest, std::max(fewest, horizon / 2));
+}  // namespace
+
+int choose_num_segments(const PlanOptions& options, int horizon, int max_window) SOPT_RT {
+  const auto windows_of = [&](int num_steps) { return (horizon + num_steps - 1) / num_steps; };
+  const int wanted = options.num_segments == 0 ? std::max(2, windows_of(options.steps_per_window))
+                                               : options.num_segments;
+  const int fewest = windows_of(max_window);
+  return std::clamp(wanted, fewest, std::max(fewest, horizon / 2));
 }
 
-}  // namespace
+double first_trust_m(double ds_m) SOPT_RT {
+  return std::min(kFirstTrust_m, kFirstTrust_steps * ds_m);
+}
+
+double next_trust_m(const SweepSummary& summary, double trust_m, double ds_m) SOPT_RT {
+  if (summary.was_shortened) return trust_m;
+  return std::clamp(kTrustGrowth * summary.displacement_m, ds_m, first_trust_m(ds_m));
+}
 
 template <class Robot>
 SegmentedOptimizer<Robot>::SegmentedOptimizer(Arena& arena, const PlannerSettings& settings,
@@ -69,42 +78,40 @@ OptimizerResult<Robot> SegmentedOptimizer<Robot>::optimize(const OptimizerProble
                              ? settings_.max_window
                              : std::min(options.max_window, settings_.max_window);
   OptimizerResult<Robot> result;
-  if (!splits_.try_reset(horizon, choose_num_segments(options.num_segments, horizon, max_window))) {
+  if (!splits_.try_reset(horizon, choose_num_segments(options, horizon, max_window))) {
     return result;
   }
   result.segments_initial = splits_.num_segments();
 
-  const double first_trust_m = std::min(kFirstTrust_m, kFirstTrust_steps * problem.ds_m);
   SweepProblem<Robot> sweep_problem{
-      problem.robot, problem.world, problem.profile,
-      first_trust_m, problem.ds_m,  {trajectory.states.begin(), trajectory.states.end()}};
+      problem.robot, problem.world,  problem.profile, first_trust_m(problem.ds_m), problem.ds_m, {},
+      options.rows,  options.solver, options.accept};
   history_.clear();
-  record(0, problem.ds_m, trajectory, begin_ns);
+  record(0, result.segments_initial, problem.ds_m, trajectory, begin_ns);
 
-  const double min_gain = options.tol_step * horizon;
   int small_gains = 0;  // sweeps in a row with little gain
   result.status = OptimizerStatus::kIterationLimit;
   for (int k = 1; k <= options.max_iterations; ++k) {
     splits_.list_windows(k % 2 == 1 ? Parity::kOdd : Parity::kEven, windows_);
+    sweep_problem.states = {trajectory.states.begin(), trajectory.states.end()};
+    sweep_problem.linearize_about_rest = options.zero_input_start && k == 1;
+    const double min_gain = options.tol_step * trajectory.horizon();
     const SweepSummary summary = sweep(sweep_problem, deadline, result.counts);
     result.iterations = k;
-    record(k, problem.ds_m, trajectory, begin_ns);
-    if (summary.was_cut) {
-      result.status = OptimizerStatus::kDeadline;
-      break;
+    small_gains = std::abs(summary.gain) <= min_gain ? small_gains + 1 : 0;
+    if (small_gains == 2 && options.tol_step > 0.0) result.status = OptimizerStatus::kConverged;
+    if (summary.was_cut) result.status = OptimizerStatus::kDeadline;
+    const int num_segments = splits_.num_segments();
+    const bool is_last = result.status != OptimizerStatus::kIterationLimit;
+    if (!is_last) {
+      adapt_windows(options.merge, 2.0 * min_gain / num_segments, max_window);
     }
-    small_gains = summary.gain <= min_gain ? small_gains + 1 : 0;
-    if (small_gains == 2 && options.tol_step > 0.0) {
-      result.status = OptimizerStatus::kConverged;
-      break;
+    if (options.resampling == Resampling::kRediscretize && rediscretize(problem.ds_m, trajectory)) {
+      (void)splits_.try_rescale(trajectory.horizon());
     }
-    sweep_problem.trust_m =
-        summary.was_shortened
-            ? sweep_problem.trust_m
-            : std::clamp(kTrustGrowth * summary.displacement_m, problem.ds_m, first_trust_m);
-    constexpr double kNeverMerge = -1.0;
-    adapt_windows(options.merge ? 2.0 * min_gain / splits_.num_segments() : kNeverMerge,
-                  max_window);
+    record(k, num_segments, problem.ds_m, trajectory, begin_ns);
+    if (is_last) break;
+    sweep_problem.trust_m = next_trust_m(summary, sweep_problem.trust_m, problem.ds_m);
   }
   result.cost = history_.back().cost;
   result.segments_final = splits_.num_segments();
@@ -137,29 +144,44 @@ SweepSummary SegmentedOptimizer<Robot>::sweep(const SweepProblem<Robot>& problem
   return summary;
 }
 
-// Cuts windows that failed and joins neighbours that gained at most max_merge_gain together. From
+// Cuts windows that failed (not in the paper) and joins neighbours that gained at most
+// max_merge_gain together. From
 // the last window to the first, so that positions in W to the left stay valid; pairs are disjoint.
 template <class Robot>
-void SegmentedOptimizer<Robot>::adapt_windows(double max_merge_gain, int max_window) SOPT_RT {
+void SegmentedOptimizer<Robot>::adapt_windows(MergeRule merge, double max_merge_gain,
+                                              int max_window) SOPT_RT {
   for (int i = windows_.size() - 1; i >= 0; --i) {
     if (!windows_[i].is_full) continue;
     if (failed(results_[i])) {
-      (void)splits_.try_split(windows_[i].i_split);
+      if (merge != MergeRule::kPrinted) (void)splits_.try_split(windows_[i].i_split);
       continue;
     }
     if (i == 0 || !windows_[i - 1].is_full) continue;
     const WindowResult& left = results_[i - 1];
     const WindowResult& right = results_[i];
     const double gain = left.cost_before - left.cost_after + right.cost_before - right.cost_after;
-    if (may_merge(left) && may_merge(right) && gain <= max_merge_gain &&
-        splits_.try_merge(windows_[i - 1].i_split, max_window)) {
+    if (may_merge(left) && may_merge(right) && std::abs(gain) <= max_merge_gain &&
+        try_merge(merge, windows_[i - 1].i_split, max_window)) {
       --i;
     }
   }
 }
 
 template <class Robot>
-void SegmentedOptimizer<Robot>::record(int iteration, double ds_m,
+bool SegmentedOptimizer<Robot>::try_merge(MergeRule merge, int i_split, int max_window) SOPT_RT {
+  switch (merge) {
+    case MergeRule::kOff:
+      return false;
+    case MergeRule::kPaired:
+      return splits_.try_merge(i_split, max_window);
+    case MergeRule::kPrinted:
+      return splits_.try_merge_as_printed(i_split, max_window);
+  }
+  return false;
+}
+
+template <class Robot>
+void SegmentedOptimizer<Robot>::record(int iteration, int num_segments, double ds_m,
                                        const Trajectory<Robot>& trajectory,
                                        std::int64_t begin_ns) SOPT_RT {
   IterationRecord entry;
@@ -169,7 +191,7 @@ void SegmentedOptimizer<Robot>::record(int iteration, double ds_m,
     entry.cost += step2 / ds_m;
     entry.path_length += std::sqrt(step2);
   }
-  entry.segments = splits_.num_segments();
+  entry.segments = num_segments;
   entry.time_ns = clock_.now_ns() - begin_ns;
   (void)history_.try_push_back(entry);
 }

@@ -78,6 +78,15 @@ struct SweepSummary {
   bool was_cut = false;         // the deadline kept a window from being optimised
 };
 
+// Windows of the odd parity that `options` ask for over a horizon.
+[[nodiscard]] int choose_num_segments(const PlanOptions& options, int horizon,
+                                      int max_window) SOPT_RT;
+
+// How far waypoints may move, which is how far away obstacles get rows: in the first sweep, and in
+// the one after `summary`.
+[[nodiscard]] double first_trust_m(double ds_m) SOPT_RT;
+[[nodiscard]] double next_trust_m(const SweepSummary& summary, double trust_m, double ds_m) SOPT_RT;
+
 template <class Robot>
 class SegmentedOptimizer {
  public:
@@ -92,8 +101,9 @@ class SegmentedOptimizer {
  private:
   [[nodiscard]] SweepSummary sweep(const SweepProblem<Robot>& problem, const Deadline& deadline,
                                    OptimizerCounts& counts) SOPT_RT;
-  void adapt_windows(double max_merge_gain, int max_window) SOPT_RT;
-  void record(int iteration, double ds_m, const Trajectory<Robot>& trajectory,
+  void adapt_windows(MergeRule merge, double max_merge_gain, int max_window) SOPT_RT;
+  [[nodiscard]] bool try_merge(MergeRule merge, int i_split, int max_window) SOPT_RT;
+  void record(int iteration, int num_segments, double ds_m, const Trajectory<Robot>& trajectory,
               std::int64_t begin_ns) SOPT_RT;
 
   PlannerSettings settings_;

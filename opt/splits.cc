@@ -51,6 +51,33 @@ bool Splits::try_merge(int i, int max_window) SOPT_RT {
   return true;
 }
 
+bool Splits::try_merge_as_printed(int i, int max_window) SOPT_RT {
+  if (!is_full_window(i) || !is_full_window(i + 2) || is_pinned_[i + 2]) return false;
+  // The middle one of three splits is now double; windows of either parity may hold it.
+  if (indices_[i + 3] - indices_[i] > max_window ||
+      indices_[i + 4] - indices_[i + 1] > max_window) {
+    return false;
+  }
+  erase(i + 2);
+  return true;
+}
+
+bool Splits::try_rescale(int horizon) SOPT_RT {
+  const std::int64_t old_horizon = indices_.empty() ? 0 : indices_.back();
+  if (horizon < 1 || old_horizon < 1 || horizon >= indices_.capacity()) return false;
+  int size = 0;
+  for (int i = 0; i < indices_.size(); ++i) {
+    const int index = static_cast<int>((2 * std::int64_t{indices_[i]} * horizon + old_horizon) /
+                                       (2 * old_horizon));
+    if (size > 0 && indices_[size - 1] == index) continue;
+    is_pinned_[size] = is_pinned_[i];
+    indices_[size++] = index;
+  }
+  (void)indices_.try_resize(size);
+  (void)is_pinned_.try_resize(size);
+  return true;
+}
+
 bool Splits::try_split(int i) SOPT_RT {
   if (!is_full_window(i) || indices_.size() + 2 > indices_.capacity()) return false;
   const int head = indices_[i + 1] - indices_[i];

@@ -42,6 +42,15 @@ class Splits {
   // `max_window` steps, or when a split point made by `try_split` would go.
   [[nodiscard]] bool try_merge(int i, int max_window) SOPT_RT;
 
+  // As printed in the paper: the end that those two windows share goes, W loses one point and the
+  // windows behind it change parity. Refused without such windows, beyond max_window, or when that
+  // point was made by `try_split`.
+  [[nodiscard]] bool try_merge_as_printed(int i, int max_window) SOPT_RT;
+
+  // Moves W to another horizon, in proportion [Leu22, Alg. 1 l.17]; points that fall together
+  // become one. False, and nothing changes, when `horizon` is below 1 or does not fit.
+  [[nodiscard]] bool try_rescale(int horizon) SOPT_RT;
+
   // Cuts the full window that begins at w[i] into two, halving both of its splits. Refused when a
   // split has fewer than 2 steps, or W is full.
   [[nodiscard]] bool try_split(int i) SOPT_RT;

@@ -12,6 +12,7 @@
 #include "models/config.h"
 #include "models/margin.h"
 #include "models/point2.h"
+#include "opt/dense_window.h"
 #include "opt/obstacle_rows.h"
 #include "opt/qp/active_set_qp.h"
 #include "opt/qp/point_rows.h"
@@ -26,7 +27,7 @@ enum class WindowStatus : std::int8_t {
   kConverged = 1,  // the solution is where the reference is already
   kNotRun = -1,    // default, or the deadline had passed
   kTooShort = -2,  // fewer than 2 steps: nothing to move
-  kNoRows = -3,    // the rows do not fit, even with the smallest trust radius
+  kNoRows = -3,    // the window or its rows do not fit, even with the smallest trust radius
   kQpFailed = -4,  // the QP has no solution or was interrupted
   kRejected = -5,  // no step passed the check
 };
@@ -56,6 +57,10 @@ struct SweepProblem {
   double trust_m = 0.0;                     // how far a waypoint may move
   double ds_m = 0.0;                        // nominal step length, the cost's scale
   std::span<typename Robot::State> states;  // the whole trajectory
+  RowMode rows = RowMode::kEdge;
+  WindowSolver solver = WindowSolver::kClosedForm;
+  bool accept = true;                 // check steps before they are taken
+  bool linearize_about_rest = false;  // u = 0: rows think that the window stands at its first point
 };
 
 template <>
@@ -68,20 +73,30 @@ class WindowOptimizer<Point2> {
   [[nodiscard]] WindowResult optimize(const SweepProblem<Point2>& problem, const Window& window,
                                       const Deadline& deadline) SOPT_RT;
 
- private:
   // The trust radius is halved at most this often to make the rows fit.
   static constexpr int kMaxTrustHalvings = 6;
-  // Steps tried towards the solution: 1, 1/2, .. 1/16.
-  static constexpr int kMaxStepHalvings = 4;
-  // Rows may be violated by this much in the QP, m, and after a step.
-  static constexpr double kQpTolerance_m = 1e-9;
+  // Rows may be violated by this much after a step, m.
   static constexpr double kRowTolerance_m = 2e-9;
 
+ private:
+  // Steps tried towards the solution: 1, 1/2, .. 1/16.
+  static constexpr int kMaxStepHalvings = 4;
+  // And by this much in the QP.
+  static constexpr double kQpTolerance_m = 1e-9;
+
+  [[nodiscard]] bool make_rows(const SweepProblem<Point2>& problem, const Window& window,
+                               double trust_m, std::int64_t& num_queries) SOPT_RT;
+  void linearize_about_rest(const Vec2* reference) SOPT_RT;
+  [[nodiscard]] WindowStatus take_solution(const SweepProblem<Point2>& problem,
+                                           const Window& window, WindowResult& result) SOPT_RT;
   [[nodiscard]] WindowStatus take_step(const SweepProblem<Point2>& problem, const Window& window,
                                        double trust_m, WindowResult& result) SOPT_RT;
 
+  int max_window_ = 0;
   PointRows rows_;
   ActiveSetQp<double> qp_;
+  DenseWindow dense_;          // empty without PlannerSettings::dense_solver
+  FixedVector<Vec2> offsets_;  // of a window's waypoints
 };
 
 }  // namespace sopt

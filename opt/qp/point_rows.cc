@@ -65,6 +65,21 @@ bool PointRows::try_add(int t, const Vec2& normal, double bound) SOPT_RT {
   return true;
 }
 
+void PointRows::shift_bounds(const Vec2* offsets) SOPT_RT {
+  for (int id = 0; id < num_ids(); ++id) {
+    if (!is_free(id)) continue;
+    bound_[id] += normal(id).dot(offsets[time(id)]);
+    groups_[id / kLanesDouble].priced_bound[id % kLanesDouble] = bound_[id];
+  }
+}
+
+void PointRows::set_positions(const Vec2* points) SOPT_RT {
+  for (int t = 1; t < num_steps_; ++t) {
+    z_.x[t] = points[t].x();
+    z_.y[t] = points[t].y();
+  }
+}
+
 bool PointRows::is_free(int id) const SOPT_RT {
   return groups_[id / kLanesDouble].priced_bound[id % kLanesDouble] > kAlwaysHolds;
 }

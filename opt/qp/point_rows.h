@@ -32,6 +32,9 @@ class PointRows {
   // before that of the row added last. False when the rows are full.
   [[nodiscard]] bool try_add(int t, const Vec2& normal, double bound) SOPT_RT;
 
+  // Moves every bound by normal . offset(t); offsets of 0 .. num_steps. Before the first solve.
+  void shift_bounds(const Vec2* offsets) SOPT_RT;
+
   // --- what the active-set core asks of a row space (active_set_qp.h)
   [[nodiscard]] bool is_valid() const SOPT_RT { return not_finite_ == 0.0; }
   [[nodiscard]] static int num_equalities() SOPT_RT { return 0; }
@@ -63,6 +66,8 @@ class PointRows {
   [[nodiscard]] Row row(int id) const SOPT_RT { return {time(id), normal(id), bound_[id]}; }
   [[nodiscard]] int num_steps() const SOPT_RT { return num_steps_; }
   [[nodiscard]] Vec2 position(int t) const SOPT_RT { return {z_.x[t], z_.y[t]}; }
+  // Puts z at other points, 0 .. num_steps, with the same ends.
+  void set_positions(const Vec2* points) SOPT_RT;
   // Replaces z by reference + step (z - reference); reference has num_steps + 1 points.
   void shorten_step(const Vec2* reference, double step) SOPT_RT;
 

@@ -155,8 +155,8 @@ TEST_F(PlannerAnswers, UnderEveryOption) {
   };
   expect_with("one tree", [](PlanOptions& o) { o.sampler = SamplerMode::kRrtStar; });
   expect_with("no shortcut", [](PlanOptions& o) { o.shortcut = false; });
-  expect_with("no merging", [](PlanOptions& o) { o.merge = false; });
-  expect_with("no time scaling", [](PlanOptions& o) { o.time_scaling = false; });
+  expect_with("no merging", [](PlanOptions& o) { o.merge = MergeRule::kOff; });
+  expect_with("no time scaling", [](PlanOptions& o) { o.resampling = Resampling::kOff; });
   expect_with("no iterations", [](PlanOptions& o) { o.max_iterations = 0; });
   expect_with("one stream", [](PlanOptions& o) { o.num_streams = 1; });
   expect_with("one segment", [](PlanOptions& o) { o.num_segments = 1; });

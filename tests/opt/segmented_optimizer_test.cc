@@ -115,7 +115,7 @@ TEST_F(SegmentedOptimizerTest, NeverRaisesTheCostIn40ForcedSweeps) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     use_random(seed);
     for (const bool merge : {false, true}) {
-      options_.merge = merge;
+      options_.merge = merge ? MergeRule::kPaired : MergeRule::kOff;
       options_.num_segments = 1 + static_cast<int>(seed % 9);
       const Run run = optimize();
       ASSERT_GE(static_cast<int>(run.result.status), 0);
@@ -180,11 +180,11 @@ TEST_F(SegmentedOptimizerTest, MergesSegmentsWithoutMuchLoss) {
   for (std::uint64_t seed = 0; seed < 25; ++seed) {
     use_random(seed);
     options_.num_segments = 9;
-    options_.merge = false;
+    options_.merge = MergeRule::kOff;
     const Run apart = optimize();
     EXPECT_EQ(apart.result.segments_initial, 9);
     EXPECT_EQ(apart.result.segments_final, 9);
-    options_.merge = true;
+    options_.merge = MergeRule::kPaired;
     const Run merged = optimize();
     EXPECT_EQ(merged.result.segments_initial, 9);
     EXPECT_LE(merged.result.segments_final, 9);

@@ -67,9 +67,9 @@ Case draw_case(Random& random) {
   options.sampler = random.chance(0.7) ? SamplerMode::kRrtStarConnect : SamplerMode::kRrtStar;
   options.num_samples = 3000;
   options.num_batches = 1;
-  options.merge = random.chance(0.8);
+  options.merge = random.chance(0.8) ? MergeRule::kPaired : MergeRule::kOff;
   options.shortcut = random.chance(0.8);
-  options.time_scaling = random.chance(0.8);
+  options.resampling = random.chance(0.8) ? Resampling::kScale : Resampling::kOff;
   if (random.chance(0.2)) options.tol_step = 0.0;
   if (random.chance(0.2)) options.max_window = 4 + random.index(57);
   // Ends are free by the hard minimum most of the time; some closer than the margin.
@@ -91,10 +91,10 @@ std::string to_text(const Case& c) {
   char rest[400];
   std::snprintf(rest, sizeof rest,
                 ",\"radius\":%.17g,\"seed\":%d,\"margin\":%.17g,\"sampler\":%d,\"merge\":%d,"
-                "\"shortcut\":%d,\"time_scaling\":%d,\"tol_step\":%.17g,\"max_window\":%d}",
+                "\"shortcut\":%d,\"resampling\":%d,\"tol_step\":%.17g,\"max_window\":%d}",
                 c.radius_m(), static_cast<int>(c.request.seed), o.margin_m,
-                static_cast<int>(o.sampler), o.merge, o.shortcut, o.time_scaling, o.tol_step,
-                o.max_window);
+                static_cast<int>(o.sampler), static_cast<int>(o.merge), o.shortcut,
+                static_cast<int>(o.resampling), o.tol_step, o.max_window);
   return "{" + sopt::oracle::to_text(c.scene) +
          ",\"start\":" + sopt::oracle::to_text(c.request.start) +
          ",\"goal\":" + sopt::oracle::to_text(c.request.goal) + rest;

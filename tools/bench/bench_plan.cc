@@ -25,6 +25,7 @@ BenchCase to_case(const Scene& scene, std::uint64_t seed, const PlanResult<Point
   c.iterations = result.iterations;
   c.segments_initial = result.segments_initial;
   c.segments_final = result.segments_final;
+  c.fell_back = result.fell_back;
   c.sampler_counts = result.sampler_counts;
   c.optimizer_counts = result.optimizer_counts;
   if (!result.plan) return c;

@@ -35,6 +35,7 @@ struct BenchCase {
   int iterations = 0;
   int segments_initial = 0;
   int segments_final = 0;
+  bool fell_back = false;  // the optimiser's result was refused
   SamplerCounts sampler_counts;
   OptimizerCounts optimizer_counts;
   double reference_ratio = 0.0;  // path length / reference_feasible_length; 0: the scene has none

@@ -65,6 +65,7 @@ std::vector<Metric> metrics() {
       case_metric("iterations", "", &BenchCase::iterations),
       case_metric("segments_initial", "", &BenchCase::segments_initial),
       case_metric("segments_final", "", &BenchCase::segments_final),
+      case_metric("fell_back", "", &BenchCase::fell_back),
       count_metric("nodes", &BenchCase::sampler_counts, &SamplerCounts::nodes),
       count_metric("edges", &BenchCase::sampler_counts, &SamplerCounts::edges),
       count_metric("clearance_queries", &BenchCase::optimizer_counts,
@@ -124,29 +125,13 @@ std::vector<std::pair<std::string, BenchRun>> by_scene(const BenchRun& run) {
   return groups;
 }
 
-// Null stands for the scene's value or the default.
-template <class T>
-nlohmann::ordered_json to_json(const std::optional<T>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
-}
-
 nlohmann::ordered_json to_json(const BenchPlanOptions& options) {
-  const AlgorithmOptions& algorithm = options.algorithm;
-  return {{"clock", options.cpu_time ? "cpu" : "elapsed"},
-          {"seeds", options.num_seeds},
-          {"repeat", options.num_repeats},
-          {"converged", options.compare_converged},
-          {"samples", to_json(algorithm.num_samples)},
-          {"streams", to_json(algorithm.num_streams)},
-          {"sampler", algorithm.sampler},
-          {"shortcut", !algorithm.no_shortcut},
-          {"segments", algorithm.segments},
-          {"max_window", to_json(algorithm.max_window)},
-          {"merge", !algorithm.no_merge},
-          {"resample", algorithm.resample},
-          {"margin", to_json(algorithm.margin_m)},
-          {"speed", to_json(algorithm.speed_mps)},
-          {"dt", to_json(algorithm.dt_s)}};
+  nlohmann::ordered_json document = {{"clock", options.cpu_time ? "cpu" : "elapsed"},
+                                     {"seeds", options.num_seeds},
+                                     {"repeat", options.num_repeats},
+                                     {"converged", options.compare_converged}};
+  document.update(to_json(options.algorithm));
+  return document;
 }
 
 std::string cpu_model() {

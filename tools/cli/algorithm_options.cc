@@ -1,11 +1,71 @@
 #include "tools/cli/algorithm_options.h"
 
+#include <utility>
+#include <vector>
+
 #include "models/capacity.h"
 #include "tools/cli/option_checks.h"
 #include "tools/io/json_fields.h"
 
 namespace sopt {
 namespace {
+
+// The words an option may have, with what they mean.
+template <class Value>
+using Words = std::vector<std::pair<const char*, Value>>;
+
+const Words<SamplerMode>& samplers() {
+  static const Words<SamplerMode> words = {{"rrt_star", SamplerMode::kRrtStar},
+                                           {"rrt_star_connect", SamplerMode::kRrtStarConnect}};
+  return words;
+}
+
+const Words<RowMode>& row_modes() {
+  static const Words<RowMode> words = {{"edge", RowMode::kEdge},
+                                       {"waypoint", RowMode::kWaypoint},
+                                       {"label_map", RowMode::kLabelMap}};
+  return words;
+}
+
+const Words<Resampling>& resamplings() {
+  static const Words<Resampling> words = {{"scale", Resampling::kScale},
+                                          {"rediscretise", Resampling::kRediscretize},
+                                          {"off", Resampling::kOff}};
+  return words;
+}
+
+const Words<MergeRule>& merge_rules() {
+  static const Words<MergeRule> words = {{"paired", MergeRule::kPaired},
+                                         {"printed", MergeRule::kPrinted}};
+  return words;
+}
+
+const Words<WindowSolver>& solvers() {
+  static const Words<WindowSolver> words = {{"kernel", WindowSolver::kClosedForm},
+                                            {"dense", WindowSolver::kDense}};
+  return words;
+}
+
+const Words<bool>& starts() {
+  static const Words<bool> words = {{"reference", false}, {"zero_input", true}};
+  return words;
+}
+
+template <class Value>
+void add_words(CLI::App& command, const char* option, std::optional<std::string>& given,
+               const Words<Value>& words, const char* help) {
+  std::vector<std::string> names;
+  for (const auto& word : words) names.emplace_back(word.first);
+  command.add_option(option, given, help)->type_name("MODE")->check(word_check(names));
+}
+
+template <class Value>
+void put(const std::optional<std::string>& given, const Words<Value>& words, Value& value) {
+  if (!given) return;
+  for (const auto& word : words) {
+    if (*given == word.first) value = word.second;
+  }
+}
 
 void add_sampler_options(CLI::App& command, AlgorithmOptions& options) {
   command.add_option("--samples", options.num_samples, "Samples per stream and batch [20000]")
@@ -14,9 +74,8 @@ void add_sampler_options(CLI::App& command, AlgorithmOptions& options) {
   command.add_option("--streams", options.num_streams, "Independent sampler streams [4]")
       ->type_name("K")
       ->check(integer_check(1, kMaxStreams));
-  command.add_option("--sampler", options.sampler, "rrt_star or rrt_star_connect [the latter]")
-      ->type_name("MODE")
-      ->check(word_check({"rrt_star", "rrt_star_connect"}));
+  add_words(command, "--sampler", options.sampler, samplers(),
+            "rrt_star or rrt_star_connect [the latter]");
   command.add_flag("--no-shortcut", options.no_shortcut, "Optimise the sampled path as it is");
 }
 
@@ -28,11 +87,46 @@ void add_optimizer_options(CLI::App& command, AlgorithmOptions& options) {
       ->type_name("N")
       ->check(integer_check(4, 320));
   command.add_flag("--no-merge", options.no_merge, "Keep the segments as they are");
-  command
-      .add_option("--resample", options.resample,
-                  "scale: shorten the steps with the path; off: keep dt [scale]")
-      ->type_name("MODE")
-      ->check(word_check({"scale", "off"}));
+  add_words(command, "--merge-rule", options.merge_rule, merge_rules(),
+            "paired: other windows keep their parity; printed: as in the paper [paired]");
+  add_words(command, "--rows", options.rows, row_modes(),
+            "Obstacles that a window keeps clear of: near its edges, near its waypoints, or the "
+            "nearest one of each waypoint [edge]");
+  add_words(command, "--qp", options.qp, solvers(),
+            "kernel: inverse Hessian in closed form; dense: condensed and factorised [kernel]");
+  add_words(command, "--start", options.start, starts(),
+            "First linearisation: about the reference, or zero_input as in the paper [reference]");
+  command.add_flag("--no-accept", options.no_accept, "Take windows' solutions without a check");
+  add_words(command, "--resample", options.resample, resamplings(),
+            "scale: shorten the steps with the path; rediscretise: fewer steps after every sweep; "
+            "off: keep dt [scale]");
+  command.add_flag("--paper", options.paper,
+                   "The paper's choices: --sampler rrt_star --no-shortcut --rows label_map --qp "
+                   "dense --start zero_input --no-accept --merge-rule printed --resample "
+                   "rediscretise; options given beside it win");
+}
+
+template <class Value>
+const char* word_of(const Words<Value>& words, const Value& value) {
+  for (const auto& word : words) {
+    if (word.second == value) return word.first;
+  }
+  return "off";
+}
+
+template <class T>
+nlohmann::ordered_json to_json(const std::optional<T>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+}
+
+// Keeps what the scene says: times and clearances.
+void take_choices(const PlanOptions& from, PlanOptions& plan) {
+  PlanOptions chosen = from;
+  chosen.speed_mps = plan.speed_mps;
+  chosen.dt_s = plan.dt_s;
+  chosen.margin_m = plan.margin_m;
+  chosen.min_clearance_m = plan.min_clearance_m;
+  plan = chosen;
 }
 
 }  // namespace
@@ -52,18 +146,43 @@ void add_algorithm_options(CLI::App& command, AlgorithmOptions& options) {
 }
 
 void apply(const AlgorithmOptions& options, PlanOptions& plan) {
+  if (options.paper) take_choices(PlanOptions::paper(), plan);
   plan.num_samples = options.num_samples.value_or(plan.num_samples);
   plan.num_streams = options.num_streams.value_or(plan.num_streams);
-  plan.num_segments = options.segments == "auto" ? 0 : std::stoi(options.segments);
+  if (options.segments != "auto") plan.num_segments = std::stoi(options.segments);
   plan.max_window = options.max_window.value_or(plan.max_window);
-  plan.merge = !options.no_merge;
-  plan.shortcut = !options.no_shortcut;
-  plan.sampler =
-      options.sampler == "rrt_star" ? SamplerMode::kRrtStar : SamplerMode::kRrtStarConnect;
-  plan.time_scaling = options.resample == "scale";
+  put(options.sampler, samplers(), plan.sampler);
+  put(options.rows, row_modes(), plan.rows);
+  put(options.resample, resamplings(), plan.resampling);
+  put(options.merge_rule, merge_rules(), plan.merge);
+  put(options.qp, solvers(), plan.solver);
+  put(options.start, starts(), plan.zero_input_start);
+  if (options.no_merge) plan.merge = MergeRule::kOff;
+  if (options.no_shortcut) plan.shortcut = false;
+  if (options.no_accept) plan.accept = false;
   plan.margin_m = options.margin_m.value_or(plan.margin_m);
   plan.speed_mps = options.speed_mps.value_or(plan.speed_mps);
   plan.dt_s = options.dt_s.value_or(plan.dt_s);
+}
+
+nlohmann::ordered_json to_json(const AlgorithmOptions& options) {
+  PlanOptions plan;
+  apply(options, plan);
+  return {{"samples", to_json(options.num_samples)},
+          {"streams", to_json(options.num_streams)},
+          {"sampler", word_of(samplers(), plan.sampler)},
+          {"shortcut", plan.shortcut},
+          {"segments", options.segments},
+          {"max_window", to_json(options.max_window)},
+          {"rows", word_of(row_modes(), plan.rows)},
+          {"qp", word_of(solvers(), plan.solver)},
+          {"start", word_of(starts(), plan.zero_input_start)},
+          {"accept", plan.accept},
+          {"merge", word_of(merge_rules(), plan.merge)},
+          {"resample", word_of(resamplings(), plan.resampling)},
+          {"margin", to_json(options.margin_m)},
+          {"speed", to_json(options.speed_mps)},
+          {"dt", to_json(options.dt_s)}};
 }
 
 }  // namespace sopt

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -15,10 +16,11 @@ struct AlgorithmOptions {
   std::optional<int> num_streams;
   std::string segments = "auto";
   std::optional<int> max_window;
+  bool paper = false;
   bool no_merge = false;
   bool no_shortcut = false;
-  std::string sampler = "rrt_star_connect";
-  std::string resample = "scale";
+  bool no_accept = false;
+  std::optional<std::string> sampler, rows, resample, merge_rule, qp, start;
   std::optional<double> margin_m;
   std::optional<double> speed_mps;
   std::optional<double> dt_s;
@@ -27,7 +29,10 @@ struct AlgorithmOptions {
 // Registers the options; `options` must live as long as `command`.
 void add_algorithm_options(CLI::App& command, AlgorithmOptions& options);
 
-// Puts what was given over `plan`.
+// Puts what was given over `plan`; each option also over what --paper chooses.
 void apply(const AlgorithmOptions& options, PlanOptions& plan);
+
+// Everything that they choose, for reports; null where the scene's value or the default holds.
+[[nodiscard]] nlohmann::ordered_json to_json(const AlgorithmOptions& options);
 
 }  // namespace sopt

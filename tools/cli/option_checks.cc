@@ -50,8 +50,8 @@ OptionCheck file_check() {
   return [](const std::string& text) { return text.empty() ? refusal(text, "a file name") : ""; };
 }
 
-OptionCheck word_check(std::initializer_list<const char*> words) {
-  return [words = std::vector<std::string>(words.begin(), words.end())](const std::string& text) {
+OptionCheck word_check(const std::vector<std::string>& words) {
+  return [words](const std::string& text) {
     if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
     std::string allowed;
     for (const std::string& word : words) allowed += (allowed.empty() ? "\"" : ", \"") + word + '"';

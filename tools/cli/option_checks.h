@@ -4,8 +4,8 @@
 
 #include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <string>
+#include <vector>
 
 #include "tools/io/json_fields.h"
 
@@ -19,6 +19,6 @@ using OptionCheck = std::function<std::string(const std::string& text)>;  // "" 
 [[nodiscard]] OptionCheck integer_or_word_check(std::uint64_t lowest, std::uint64_t highest,
                                                 const char* word);
 [[nodiscard]] OptionCheck file_check();  // not empty, as a shell variable that is not set would be
-[[nodiscard]] OptionCheck word_check(std::initializer_list<const char*> words);
+[[nodiscard]] OptionCheck word_check(const std::vector<std::string>& words);
 
 }  // namespace sopt

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "opt/reference.h"
 #include "tools/io/input_error.h"
 #include "tools/io/json_fields.h"
 
@@ -253,10 +254,11 @@ PlannerSettings make_settings(const Scene& scene, const PlanOptions& options) {
   PlannerSettings settings;
   settings.nodes_per_stream = std::max(settings.nodes_per_stream, options.num_samples);
   settings.max_window = std::max(settings.max_window, options.max_window);
+  // Rows grow with the window; the default room is for the default window.
+  settings.rows_per_window *= std::max(1, settings.max_window / PlannerSettings().max_window);
+  settings.dense_solver = options.solver == WindowSolver::kDense;
   if (options.num_streams > 0) settings.num_streams = options.num_streams;
-  const double wanted_m = options.speed_mps > 0.0 ? options.speed_mps * options.dt_s
-                                                  : scene.robot.default_step_length(*scene.world);
-  const double step_m = std::min(wanted_m, scene.robot.v_max_mps * options.dt_s);
+  const double step_m = choose_step_length(scene.robot, *scene.world, options);
   const double num_steps = kLongestPathInDiagonals * diagonal_m(scene) / step_m;
   const double most = kMaxSegments * settings.max_window;
   settings.max_horizon =

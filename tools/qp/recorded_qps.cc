@@ -12,6 +12,8 @@
 #include "alloc/fixed_vector.h"
 #include "alloc/memory_block.h"
 #include "opt/obstacle_rows.h"
+#include "opt/reference.h"
+#include "opt/segmented_optimizer.h"
 #include "opt/window_optimizer.h"
 #include "tools/cli/planner_host.h"
 #include "tools/io/input_error.h"
@@ -26,16 +28,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kNumSweeps = 4;  // two of each parity
 constexpr double kSameNormal_rad = 0.2;
 
-// As in opt/segmented_optimizer.cc.
-constexpr int kStepsPerWindow = 50;
-constexpr double kFirstTrust_steps = 15.0;
-constexpr double kFirstTrust_m = 3.0;
-constexpr double kTrustGrowth = 2.0;
-
-// As WindowOptimizer does to make rows fit.
-constexpr int kMaxTrustHalvings = 6;
-constexpr double kRowTolerance_m = 2e-9;  // what it leaves a row violated by
-
 // A plan that stops at its reference, and what its windows keep clear.
 struct Plan0 {
   std::vector<Vec2> states;
@@ -48,7 +40,7 @@ Plan0 make_plan_0(const Scene& scene, std::uint64_t seed) {
   request.seed = seed;
   PlanOptions& options = request.options;
   options.max_iterations = 0;
-  options.time_scaling = false;
+  options.resampling = Resampling::kOff;
   const auto host = std::make_unique<PlannerHost>(scene, options);
   const PlanResult<Point2> result = host->planner().plan(request);
   if (!result.plan) {
@@ -60,9 +52,7 @@ Plan0 make_plan_0(const Scene& scene, std::uint64_t seed) {
   plan.states.assign(states.begin(), states.end());
   const double rung = options.margin_m > 0.0 ? result.margin_m / options.margin_m : 1.0;
   plan.profile.rule = {options.margin_m, rung, options.min_clearance_m};
-  const double wanted_m = options.speed_mps > 0.0 ? options.speed_mps * options.dt_s
-                                                  : scene.robot.default_step_length(*scene.world);
-  plan.ds_m = std::min(wanted_m, scene.robot.v_max_mps * options.dt_s);
+  plan.ds_m = choose_step_length(scene.robot, *scene.world, options);
   return plan;
 }
 
@@ -86,7 +76,8 @@ SegmentQp to_segment_qp(const PointRows& rows, const std::vector<Vec2>& referenc
 bool holds(const KernelPart<double>& part, const std::vector<Vec2>& points) {
   return std::all_of(part.rows.begin(), part.rows.end(), [&](const KernelRow<double>& row) {
     const Vec2& point = points[static_cast<std::size_t>(row.t)];
-    return Vec2(row.direction.data()).dot(point) >= row.bound - kRowTolerance_m;
+    return Vec2(row.direction.data()).dot(point) >=
+           row.bound - WindowOptimizer<Point2>::kRowTolerance_m;
   });
 }
 
@@ -118,14 +109,14 @@ class Recorder {
         arena_(memory_),
         workspace_(arena_, settings) {
     if (arena_.exhausted()) throw HostError("no memory for the windows of a plan");
-    first_trust_m_ = std::min(kFirstTrust_m, kFirstTrust_steps * plan_.ds_m);
-    sweep_ = {&scene.robot,   scene.world.get(), plan_.profile,
-              first_trust_m_, plan_.ds_m,        plan_.states};
+    sweep_ = {&scene.robot, scene.world.get(), plan_.profile, first_trust_m(plan_.ds_m),
+              plan_.ds_m,   plan_.states};
   }
 
   std::vector<RecordedQp> run() {
     const int horizon = static_cast<int>(plan_.states.size()) - 1;
-    const int num_segments = std::max(2, (horizon + kStepsPerWindow - 1) / kStepsPerWindow);
+    const int num_segments =
+        choose_num_segments(PlanOptions(), horizon, PlannerSettings().max_window);
     if (!workspace_.splits.try_reset(horizon, num_segments)) return {};
     for (int k = 1; k <= kNumSweeps; ++k) run_sweep(k);
     return std::move(recorded_);
@@ -134,17 +125,15 @@ class Recorder {
  private:
   void run_sweep(int k) {
     workspace_.splits.list_windows(k % 2 == 1 ? Parity::kOdd : Parity::kEven, workspace_.windows);
-    double displacement_m = 0.0;
-    bool was_shortened = false;
+    SweepSummary summary;
     for (const Window& window : workspace_.windows) {
       if (window.num_steps() < 2) continue;
       record(k, window);
       const WindowResult result = workspace_.optimizer.optimize(sweep_, window, Deadline());
-      displacement_m = std::max(displacement_m, result.displacement_m);
-      was_shortened = was_shortened || result.was_shortened;
+      summary.displacement_m = std::max(summary.displacement_m, result.displacement_m);
+      summary.was_shortened = summary.was_shortened || result.was_shortened;
     }
-    if (was_shortened) return;
-    sweep_.trust_m = std::clamp(kTrustGrowth * displacement_m, plan_.ds_m, first_trust_m_);
+    sweep_.trust_m = next_trust_m(summary, sweep_.trust_m, plan_.ds_m);
   }
 
   void record(int k, const Window& window) {
@@ -160,7 +149,7 @@ class Recorder {
   bool make_rows(const Window& window) {
     double trust_m = sweep_.trust_m;
     std::int64_t num_queries = 0;
-    for (int halvings = 0; halvings <= kMaxTrustHalvings; ++halvings) {
+    for (int halvings = 0; halvings <= WindowOptimizer<Point2>::kMaxTrustHalvings; ++halvings) {
       if (make_obstacle_rows(*sweep_.robot, *sweep_.world, sweep_.profile, sweep_.states, window,
                              trust_m, workspace_.rows, num_queries)) {
         return true;
@@ -174,7 +163,6 @@ class Recorder {
   MemoryBlock memory_;
   Arena arena_;
   Workspace workspace_;
-  double first_trust_m_ = 0.0;
   SweepProblem<Point2> sweep_;  // states: those of plan_
   std::vector<RecordedQp> recorded_;
 };
