@@ -51,14 +51,14 @@ struct PlannerSettings {
   int num_streams = 4;           // sampler streams, 1..kMaxStreams
   int nodes_per_stream = 20000;  // both trees of a stream together, >= 4
   int max_path_vertices = 1024;  // of a sampled path, >= 4
-  int max_window = 60;           // steps of one optimisation window, >= 4
+  int max_window = 60;           // steps of one optimisation window, 4..kMaxWindow
   int rows_per_window = 512;     // obstacle rows of one window's QP, at least; >= 0
   bool dense_solver = false;     // room for WindowSolver::kDense
 
   [[nodiscard]] constexpr bool is_valid() const noexcept {
     return max_horizon >= 2 && num_streams >= 1 && num_streams <= kMaxStreams &&
            nodes_per_stream >= 4 && max_path_vertices >= 4 && max_window >= 4 &&
-           rows_per_window >= 0;
+           max_window <= kMaxWindow && rows_per_window >= 0;
   }
   // The least that is valid.
   [[nodiscard]] static constexpr PlannerSettings smallest() noexcept { return {2, 1, 4, 4, 4, 0}; }
@@ -87,6 +87,7 @@ struct PlanOptions {
   WindowSolver solver = WindowSolver::kClosedForm;
   bool accept = true;             // take only steps that pass the window check
   bool zero_input_start = false;  // first sweep linearised about u = 0, as the paper begins
+  double improve_s = 0.0;         // after the first plan, search for shorter ones this long; finite
   int max_iterations = 20;        // [Leu22, III-B termination (1)]
   double tol_step = 1e-3;         // cost per step, see opt/segmented_optimizer.h
 

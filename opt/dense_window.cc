@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "models/simd.h"
+
 namespace sopt {
 
-// Rows, padded as PointRows pads them, and the two equalities of the end.
+// As many rows as PointRows may hold, and the two equalities of the end.
 DenseWindow::DenseWindow(Arena& arena, int max_window, int max_rows) noexcept
-    : rows_(arena, {2 * max_window, max_rows + 2, 2 * max_window}),
+    : rows_(arena, {2 * max_window, max_rows + kLanesDouble * max_window + 2, 2 * max_window}),
       qp_(arena, 2 * max_window),
       hessian_(arena, 4 * max_window * max_window),
       gradient_(arena, 2 * max_window),
@@ -22,12 +24,14 @@ DenseWindow::DenseWindow(Arena& arena, int max_window, int max_rows) noexcept
 
 QpResult<double> DenseWindow::solve(PointRows& rows, const QpOptions<double>& options,
                                     const Deadline& deadline) SOPT_RT {
-  if (!rows.is_valid() || !condense(rows)) {
+  const bool is_too_long = rows.num_steps() >= points_.capacity();
+  if (!rows.is_valid() || is_too_long || !condense(rows)) {
     QpResult<double> result;
     result.status = rows.is_valid() ? QpStatus::kCapacity : QpStatus::kBadInput;
     return result;
   }
-  const QpResult<double> result = qp_.solve(rows_, options, deadline);
+  QpResult<double> result = qp_.solve(rows_, options, deadline);
+  result.num_active = std::max(0, result.num_active - rows_.num_equalities());  // of `rows`
   if (result.status == QpStatus::kOptimal) write_points(rows);
   return result;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "opt/reference.h"
 #include "opt/time_scaling.h"
@@ -16,6 +17,10 @@ constexpr double kVerifyPerBox_s = 1e-8;  // per obstacle and run of 16 steps
 
 // A rung never asks for less than the hard clearance plus what the rows' tolerance may lose.
 constexpr double kFloorGuard_m = 1e-8;
+
+// A path has to be this much shorter, relative, to be worth optimising: below it is the same way.
+constexpr double kWorthwhileGain = 1e-3;
+constexpr int kMaxImproveRounds = 1 << 20;
 
 double verify_reserve_s(int horizon, int num_obstacles) noexcept {
   const double runs = horizon / 16.0 + 1.0;
@@ -98,7 +103,13 @@ Planner<Robot>::Planner(Arena& arena, const Robot& robot, const PlannerSettings&
       settings_(settings.is_valid() ? settings : PlannerSettings::smallest()),
       clock_(clock),
       sampler_(arena, settings_, executor, clock),
-      optimizer_(arena, settings_, executor, clock) {
+      optimizer_(arena, settings_, executor, clock),
+      best_path_(arena, settings_.max_path_vertices),
+      known_path_(arena, settings_.max_path_vertices),
+      best_history_(arena, kMaxIterations + 1),
+      best_splits_(arena, settings_.max_horizon + 1),
+      candidate_(arena, settings_.max_horizon),
+      improvements_(arena, kMaxImprovements) {
   for (Slot& slot : slots_) slot.trajectory = Trajectory<Robot>(arena, settings_.max_horizon);
   is_ready_ = settings.is_valid() && !arena.exhausted();
 }
@@ -115,17 +126,23 @@ PlanResult<Robot> Planner<Robot>::plan(const PlanRequest<Robot>& request) SOPT_R
   } else if (slot == slots_.end()) {
     fail(result, PlanStatus::kNoSlot, PlanStage::kRequest, "all plan slots are held");
   } else if (check_end(request, true, result) && check_end(request, false, result)) {
-    plan_into(*slot, request, Deadline(clock_, begin_ns, request.deadline_s), result);
+    const Deadline deadline(clock_, begin_ns, request.deadline_s);
+    Call call{request, deadline, begin_ns};
+    plan_into(*slot, call, result);
   }
   result.times.total_ns = clock_.now_ns() - begin_ns;
   return result;
 }
 
 template <class Robot>
-void Planner<Robot>::plan_into(Slot& slot, const PlanRequest<Robot>& request,
-                               const Deadline& deadline, PlanResult<Robot>& result) SOPT_RT {
-  const double step_length = choose_step_length(robot_, *request.world, request.options);
-  const MarginLadder ladder = make_ladder(request, step_length);
+void Planner<Robot>::plan_into(Slot& slot, Call& call, PlanResult<Robot>& result) SOPT_RT {
+  const PlanRequest<Robot>& request = call.request;
+  call.step_length = choose_step_length(robot_, *request.world, request.options);
+  if (!(call.step_length > 0.0)) {
+    fail(result, PlanStatus::kBadInput, PlanStage::kRequest, "speed_mps times dt_s is too small");
+    return;
+  }
+  call.ladder = make_ladder(request, call.step_length);
   std::int64_t stage_ns = clock_.now_ns();
   const auto lap_ns = [&] {
     const std::int64_t before_ns = stage_ns;
@@ -133,43 +150,111 @@ void Planner<Robot>::plan_into(Slot& slot, const PlanRequest<Robot>& request,
     return stage_ns - before_ns;
   };
 
-  int i_rung = 0;
-  if (!sample(request, ladder, deadline, i_rung, result)) return;
+  if (!sample(call, result)) return;
   (void)lap_ns();
-  if (!make_plan_0(request, step_length, slot, result)) return;
-  const double reference_length = path_length(slot.trajectory);
+  if (!make_plan_0(call, slot.trajectory, result)) return;
   result.times.reference_ns = lap_ns();
-
+  // Twice: what is refused is followed by plan 0.
   const double reserve_s =
-      verify_reserve_s(slot.trajectory.horizon(), request.world->num_obstacles());
+      2.0 * verify_reserve_s(slot.trajectory.horizon(), request.world->num_obstacles());
   const OptimizerResult<Robot> optimized =
-      optimizer_.optimize({&robot_, request.world, ladder[static_cast<std::size_t>(i_rung)],
-                           step_length, &request.options},
-                          slot.trajectory, deadline.earlier_by(reserve_s));
-  if (request.options.resampling == Resampling::kScale) {
-    scale_time(robot_, reference_length, slot.trajectory);
-  }
-  (void)fill_inputs(slot.trajectory);
+      optimize(call, call.deadline.earlier_by(reserve_s), slot.trajectory);
   report_optimizer(optimized, result);
   result.times.optimize_ns = lap_ns();
 
-  if (deadline.expired()) {
+  if (call.deadline.expired()) {
     fail(result, PlanStatus::kDeadline, PlanStage::kOptimize,
          "the deadline passed before verification");
     return;
   }
   bool is_verified = try_verify(request, slot, result);
-  if (!is_verified && make_plan_0(request, step_length, slot, result)) {
+  if (!is_verified && make_plan_0(call, slot.trajectory, result)) {
     // The optimiser's result was refused: plan 0 leaves instead, if it passes.
-    result.fell_back = true;
     result.cost = optimized.history.front().cost;
     result.path_length = optimized.history.front().path_length;
     is_verified = fill_inputs(slot.trajectory) && try_verify(request, slot, result);
+    result.fell_back = is_verified;
   }
   result.times.verify_ns = lap_ns();
   if (!is_verified) return;
   result.status = optimized.status == OptimizerStatus::kDeadline ? PlanStatus::kDeadlineFeasible
                                                                  : PlanStatus::kOk;
+  if (request.options.improve_s > 0.0 && result.status == PlanStatus::kOk) {
+    improve(slot, call, result);
+    result.times.improve_ns = lap_ns();
+  }
+}
+
+// From plan 0 to a trajectory with inputs on its time grid.
+template <class Robot>
+OptimizerResult<Robot> Planner<Robot>::optimize(const Call& call, const Deadline& deadline,
+                                                Trajectory<Robot>& trajectory) SOPT_RT {
+  const PlanRequest<Robot>& request = call.request;
+  const double reference_length = path_length(trajectory);
+  const OptimizerResult<Robot> optimized = optimizer_.optimize(
+      {&robot_, request.world, call.ladder[static_cast<std::size_t>(call.i_rung)], call.step_length,
+       &request.options},
+      trajectory, deadline);
+  if (request.options.resampling == Resampling::kScale) {
+    scale_time(robot_, reference_length, trajectory);
+  }
+  (void)fill_inputs(trajectory);
+  return optimized;
+}
+
+// Other ways to the goal, as long as the budget lasts: what is shorter as a path is optimised, what
+// is shorter as a verified plan takes the place of the one that is there.
+template <class Robot>
+void Planner<Robot>::improve(Slot& slot, Call& call, PlanResult<Robot>& result) SOPT_RT {
+  const PlanRequest<Robot>& request = call.request;
+  (void)best_path_.vertices.try_assign(result.path->vertices.span());
+  (void)known_path_.vertices.try_assign(result.path->vertices.span());
+  result.path = &best_path_;
+  improvements_.clear();
+  record_improvement(call, result);
+  const double reserve_s =
+      verify_reserve_s(slot.trajectory.horizon(), request.world->num_obstacles());
+  const Deadline until =
+      Deadline::earliest(call.deadline.earlier_by(2.0 * reserve_s),
+                         Deadline(clock_, clock_.now_ns(), request.options.improve_s));
+  for (int i_round = 0; i_round < kMaxImproveRounds && !until.expired(); ++i_round) {
+    const SamplerResult<Robot> sampled =
+        sampler_.improve_path({&robot_, request.world, request.start, request.goal, &call.ladder,
+                               request.seed, &request.options},
+                              call.i_rung, i_round, known_path_, until);
+    result.sampler_counts.edges += sampled.counts.edges;
+    result.sampler_counts.rounds += sampled.counts.rounds;
+    const double worthwhile = (1.0 - kWorthwhileGain) * known_path_.length();
+    if (sampled.path == nullptr || sampled.path->length() > worthwhile) continue;
+    (void)known_path_.vertices.try_assign(sampled.path->vertices.span());
+    if (!make_reference(known_path_, call.step_length, request.options.dt_s, candidate_)) continue;
+    const OptimizerResult<Robot> optimized = optimize(call, until, candidate_);
+    if (optimized.history.back().path_length >= result.path_length) continue;
+    if (try_replace(call, optimized, slot, result)) record_improvement(call, result);
+  }
+}
+
+template <class Robot>
+bool Planner<Robot>::try_replace(const Call& call, const OptimizerResult<Robot>& optimized,
+                                 Slot& slot, PlanResult<Robot>& result) SOPT_RT {
+  const PlanRequest<Robot>& request = call.request;
+  const VerifyResult<Robot> verified =
+      verify(robot_, candidate_,
+             {request.start, request.goal, request.world, request.options.min_clearance_m});
+  if (!verified.plan) return false;
+  result.plan.reset();
+  std::swap(slot.trajectory, candidate_);
+  (void)best_path_.vertices.try_assign(known_path_.vertices.span());
+  report_optimizer(optimized, result);
+  result.fell_back = false;
+  return try_verify(request, slot, result);  // the same numbers again, now in the slot
+}
+
+template <class Robot>
+void Planner<Robot>::record_improvement(const Call& call, PlanResult<Robot>& result) SOPT_RT {
+  const ImprovementRecord record{clock_.now_ns() - call.begin_ns, result.path_length};
+  if (!improvements_.try_push_back(record)) improvements_.back() = record;
+  result.improvements = improvements_.span();
 }
 
 template <class Robot>
@@ -211,6 +296,7 @@ bool Planner<Robot>::check_request(const PlanRequest<Robot>& request,
        static_cast<double>(o.max_window)},
       {o.max_iterations >= 0 && o.max_iterations <= kMaxIterations,
        "max_iterations must be in [0, kMaxIterations]", static_cast<double>(o.max_iterations)},
+      {not_negative(o.improve_s), "improve_s must be finite and not negative", o.improve_s},
       {not_negative(o.tol_step), "tol_step must be finite and not negative", o.tol_step},
   };
   for (const Rule& rule : rules) {
@@ -259,20 +345,19 @@ MarginLadder Planner<Robot>::make_ladder(const PlanRequest<Robot>& request,
 }
 
 template <class Robot>
-bool Planner<Robot>::sample(const PlanRequest<Robot>& request, const MarginLadder& ladder,
-                            const Deadline& deadline, int& i_rung,
-                            PlanResult<Robot>& result) SOPT_RT {
+bool Planner<Robot>::sample(Call& call, PlanResult<Robot>& result) SOPT_RT {
+  const PlanRequest<Robot>& request = call.request;
   const SamplerResult<Robot> sampled =
-      sampler_.find_path({&robot_, request.world, request.start, request.goal, &ladder,
+      sampler_.find_path({&robot_, request.world, request.start, request.goal, &call.ladder,
                           request.seed, &request.options},
-                         deadline);
-  i_rung = sampled.i_rung;
+                         call.deadline);
+  call.i_rung = sampled.i_rung;
   result.path = sampled.path;
   result.sampler_path_length = sampled.raw_length;
   result.sampler_counts = sampled.counts;
   result.times.sample_ns = sampled.sample_ns;
   result.times.shortcut_ns = sampled.shortcut_ns;
-  result.margin_m = kMarginRungs[static_cast<std::size_t>(i_rung)] * request.options.margin_m;
+  result.margin_m = kMarginRungs[static_cast<std::size_t>(call.i_rung)] * request.options.margin_m;
   switch (sampled.status) {
     case SamplerStatus::kOk:
       return true;
@@ -291,12 +376,14 @@ bool Planner<Robot>::sample(const PlanRequest<Robot>& request, const MarginLadde
 }
 
 template <class Robot>
-bool Planner<Robot>::make_plan_0(const PlanRequest<Robot>& request, double step_length, Slot& slot,
+bool Planner<Robot>::make_plan_0(const Call& call, Trajectory<Robot>& trajectory,
                                  PlanResult<Robot>& result) SOPT_RT {
-  if (make_reference(*result.path, step_length, request.options.dt_s, slot.trajectory)) return true;
+  if (make_reference(*result.path, call.step_length, call.request.options.dt_s, trajectory)) {
+    return true;
+  }
   return fail(result, PlanStatus::kCapacity, PlanStage::kReference,
               "the trajectory needs more steps than max_horizon",
-              std::ceil(result.path->length() / step_length));
+              std::ceil(result.path->length() / call.step_length));
 }
 
 template <class Robot>
@@ -305,8 +392,10 @@ void Planner<Robot>::report_optimizer(const OptimizerResult<Robot>& optimized,
   result.iterations = optimized.iterations;
   result.segments_initial = optimized.segments_initial;
   result.segments_final = optimized.segments_final;
-  result.history = optimized.history;
-  result.splits = optimized.splits;
+  (void)best_history_.try_assign(optimized.history);
+  (void)best_splits_.try_assign(optimized.splits);
+  result.history = best_history_.span();
+  result.splits = best_splits_.span();
   result.optimizer_counts = optimized.counts;
   if (optimized.history.empty()) return;
   result.cost = optimized.history.back().cost;

@@ -51,6 +51,7 @@ struct StageTimes {
   std::int64_t reference_ns = 0;
   std::int64_t optimize_ns = 0;
   std::int64_t verify_ns = 0;
+  std::int64_t improve_ns = 0;  // all that came after the first plan
   std::int64_t total_ns = 0;
 };
 
@@ -76,6 +77,12 @@ class PlanLease {
   bool* is_held_ = nullptr;  // of the slot
 };
 
+// A plan that replaced a longer one, or the first one.
+struct ImprovementRecord {
+  std::int64_t time_ns = 0;  // since the call
+  double path_length = 0.0;
+};
+
 // What one call of `plan` did. Pointers and spans look into the planner and are valid until its
 // next call; the lease is valid for as long as it is held.
 template <class Robot>
@@ -94,6 +101,8 @@ struct PlanResult {
   int segments_final = 0;
   std::span<const IterationRecord> history;  // entry 0 is the reference
   std::span<const int> splits;               // final W, see opt/splits.h
+  // With improve_s > 0: entry 0 is the first plan, the last one is `plan`.
+  std::span<const ImprovementRecord> improvements;
   SamplerCounts sampler_counts;
   OptimizerCounts optimizer_counts;
   StageTimes times;
@@ -139,13 +148,25 @@ class Planner {
                                PlanResult<Robot>& result) const SOPT_RT;
   [[nodiscard]] MarginLadder make_ladder(const PlanRequest<Robot>& request,
                                          double step_length) const SOPT_RT;
-  void plan_into(Slot& slot, const PlanRequest<Robot>& request, const Deadline& deadline,
-                 PlanResult<Robot>& result) SOPT_RT;
-  [[nodiscard]] bool sample(const PlanRequest<Robot>& request, const MarginLadder& ladder,
-                            const Deadline& deadline, int& i_rung,
-                            PlanResult<Robot>& result) SOPT_RT;
-  [[nodiscard]] bool make_plan_0(const PlanRequest<Robot>& request, double step_length, Slot& slot,
+  // A request under way.
+  struct Call {
+    const PlanRequest<Robot>& request;
+    const Deadline& deadline;
+    std::int64_t begin_ns = 0;
+    double step_length = 0.0;
+    MarginLadder ladder{};
+    int i_rung = 0;  // of the ladder that is kept
+  };
+  void plan_into(Slot& slot, Call& call, PlanResult<Robot>& result) SOPT_RT;
+  [[nodiscard]] bool sample(Call& call, PlanResult<Robot>& result) SOPT_RT;
+  [[nodiscard]] bool make_plan_0(const Call& call, Trajectory<Robot>& trajectory,
                                  PlanResult<Robot>& result) SOPT_RT;
+  [[nodiscard]] OptimizerResult<Robot> optimize(const Call& call, const Deadline& deadline,
+                                                Trajectory<Robot>& trajectory) SOPT_RT;
+  void improve(Slot& slot, Call& call, PlanResult<Robot>& result) SOPT_RT;
+  [[nodiscard]] bool try_replace(const Call& call, const OptimizerResult<Robot>& optimized,
+                                 Slot& slot, PlanResult<Robot>& result) SOPT_RT;
+  void record_improvement(const Call& call, PlanResult<Robot>& result) SOPT_RT;
   void report_optimizer(const OptimizerResult<Robot>& optimized, PlanResult<Robot>& result) SOPT_RT;
   [[nodiscard]] bool try_verify(const PlanRequest<Robot>& request, Slot& slot,
                                 PlanResult<Robot>& result) SOPT_RT;
@@ -156,6 +177,13 @@ class Planner {
   Sampler<Robot> sampler_;
   SegmentedOptimizer<Robot> optimizer_;
   std::array<Slot, kNumPlanSlots> slots_;
+  // Of the plan that is the best so far while others are tried.
+  Path<Robot> best_path_;
+  Path<Robot> known_path_;  // the shortest one, whose plan need not be
+  FixedVector<IterationRecord> best_history_;
+  FixedVector<int> best_splits_;
+  Trajectory<Robot> candidate_;
+  FixedVector<ImprovementRecord> improvements_;
   bool is_ready_ = false;
 };
 

@@ -46,7 +46,8 @@ double first_trust_m(double ds_m) SOPT_RT {
 
 double next_trust_m(const SweepSummary& summary, double trust_m, double ds_m) SOPT_RT {
   if (summary.was_shortened) return trust_m;
-  return std::clamp(kTrustGrowth * summary.displacement_m, ds_m, first_trust_m(ds_m));
+  // Steps may be longer than the first trust radius.
+  return std::max(ds_m, std::min(kTrustGrowth * summary.displacement_m, first_trust_m(ds_m)));
 }
 
 template <class Robot>

@@ -69,7 +69,10 @@ bool Splits::try_rescale(int horizon) SOPT_RT {
   for (int i = 0; i < indices_.size(); ++i) {
     const int index = static_cast<int>((2 * std::int64_t{indices_[i]} * horizon + old_horizon) /
                                        (2 * old_horizon));
-    if (size > 0 && indices_[size - 1] == index) continue;
+    if (size > 0 && indices_[size - 1] == index) {
+      is_pinned_[size - 1] = is_pinned_[size - 1] || is_pinned_[i];
+      continue;
+    }
     is_pinned_[size] = is_pinned_[i];
     indices_[size++] = index;
   }

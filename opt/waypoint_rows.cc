@@ -1,6 +1,6 @@
 #include "opt/waypoint_rows.h"
 
-#include <algorithm>
+#include <cmath>
 
 namespace sopt {
 namespace {
@@ -48,13 +48,13 @@ struct WaypointRows {
     });
   }
 
-  // Looks ever farther until some obstacle is there.
-  [[nodiscard]] bool add_nearest(const Waypoint& at, double trust_m) noexcept {
-    const double diagonal = (world.bounds().upper - world.bounds().lower).norm();
+  // Looks ever farther until some obstacle is there, at most a diagonal away.
+  [[nodiscard]] bool add_nearest(const Waypoint& at) noexcept {
+    constexpr int kDoublings = 6;
+    double reach = std::ldexp((world.bounds().upper - world.bounds().lower).norm(), -kDoublings);
     Clearance2 nearest;
     int i_nearest = kNoObstacle;
-    for (double reach = trust_m; i_nearest == kNoObstacle && world.num_obstacles() > 0;
-         reach *= 2) {
+    for (int k = 0; k <= kDoublings && i_nearest == kNoObstacle; ++k, reach *= 2.0) {
       world.for_each_near(at.z, at.z, reach, [&](int i) {
         Clearance2 c;
         ++num_queries;
@@ -64,7 +64,6 @@ struct WaypointRows {
         i_nearest = i;
         return true;
       });
-      if (reach > diagonal) break;
     }
     return i_nearest == kNoObstacle || try_add(at, nearest, i_nearest);
   }
@@ -82,9 +81,13 @@ bool make_waypoint_rows(RowMode mode, const Point2& robot, const World2& world,
   rows.reset(n, state(0), state(n));
   WaypointRows maker{robot, world, rows, num_queries};
   for (int t = 1; t < n; ++t) {
-    const Waypoint at = {t, state(t), profile.at_step(window.first + t, horizon)};
+    // The waypoint belongs to two steps, whose rules differ next to the ends; the reference keeps
+    // both.
+    const ClearanceRule before = profile.at_step(window.first + t - 1, horizon);
+    const ClearanceRule after = profile.at_step(window.first + t, horizon);
+    const Waypoint at = {t, state(t), before.cap_m > after.cap_m ? before : after};
     const bool fits =
-        mode == RowMode::kLabelMap ? maker.add_nearest(at, trust_m) : maker.add_all(at, trust_m);
+        mode == RowMode::kLabelMap ? maker.add_nearest(at) : maker.add_all(at, trust_m);
     if (!fits) return false;
   }
   return true;

@@ -26,6 +26,11 @@ class Deadline {
     return at_ns_ != kNever && clock_.now_ns() >= at_ns_;
   }
 
+  // Whichever of two on the same clock expires first.
+  [[nodiscard]] static Deadline earliest(const Deadline& a, const Deadline& b) SOPT_RT {
+    return a.at_ns_ <= b.at_ns_ ? a : b;
+  }
+
   // The same deadline, `reserve_s` seconds earlier: what is left for a stage that must finish
   // before another one of known length.
   [[nodiscard]] Deadline earlier_by(double reserve_s) const SOPT_RT {

@@ -34,12 +34,12 @@ template <class Robot>
 SamplerResult<Robot> Sampler<Robot>::find_path(const SamplerProblem<Robot>& problem,
                                                const Deadline& deadline) SOPT_RT {
   const PlanOptions& options = *problem.options;
-  num_streams_ =
-      options.num_streams == 0 ? max_streams_ : std::min(options.num_streams, max_streams_);
+  choose_streams(options);
   SamplerResult<Robot> result;
   for (int i_batch = 0; i_batch < options.num_batches; ++i_batch) {
     for (int i_rung = 0; i_rung < static_cast<int>(kMarginRungs.size()); ++i_rung) {
-      result.status = search_rung(problem, i_batch, i_rung, deadline, result);
+      Search search{&problem, &deadline, &result, i_batch, i_rung};
+      result.status = run(search);
       if (result.status != SamplerStatus::kNoPath) return result;
     }
   }
@@ -47,17 +47,33 @@ SamplerResult<Robot> Sampler<Robot>::find_path(const SamplerProblem<Robot>& prob
 }
 
 template <class Robot>
-SamplerStatus Sampler<Robot>::search_rung(const SamplerProblem<Robot>& problem, int i_batch,
-                                          int i_rung, const Deadline& deadline,
-                                          SamplerResult<Robot>& result) SOPT_RT {
-  const MarginProfile& profile = (*problem.ladder)[static_cast<std::size_t>(i_rung)];
-  Search search{&problem, &profile, &deadline, &result};
-  reset_streams(search, i_batch, i_rung);
+SamplerResult<Robot> Sampler<Robot>::improve_path(const SamplerProblem<Robot>& problem, int i_rung,
+                                                  int i_round, const Path<Robot>& known,
+                                                  const Deadline& deadline) SOPT_RT {
+  choose_streams(*problem.options);
+  SamplerResult<Robot> result;
+  Search search{&problem, &deadline, &result, problem.options->num_batches + i_round,
+                i_rung,   &known};
+  result.status = run(search);
+  return result;
+}
+
+template <class Robot>
+void Sampler<Robot>::choose_streams(const PlanOptions& options) SOPT_RT {
+  num_streams_ =
+      options.num_streams == 0 ? max_streams_ : std::min(options.num_streams, max_streams_);
+}
+
+template <class Robot>
+SamplerStatus Sampler<Robot>::run(Search& search) SOPT_RT {
+  const Deadline& deadline = *search.deadline;
+  SamplerResult<Robot>& result = *search.result;
+  reset_streams(search);
   auto run_stream = [&](int /*i_worker*/, int i) {
     streams_[static_cast<std::size_t>(i)].run(kRoundSamples, deadline);
   };
   const auto is_done = [](const auto& stream) { return stream.has_path() || stream.exhausted(); };
-  const int share = problem.options->num_samples / static_cast<int>(kMarginRungs.size());
+  const int share = search.problem->options->num_samples / static_cast<int>(kMarginRungs.size());
   for (int used = 0, limit = share; used < limit && !deadline.expired(); used += kRoundSamples) {
     if (std::all_of(active_streams().begin(), active_streams().end(), is_done)) break;
     const std::int64_t begin_ns = clock_.now_ns();
@@ -69,25 +85,27 @@ SamplerStatus Sampler<Robot>::search_rung(const SamplerProblem<Robot>& problem, 
     if (is_first) limit = used + kRoundSamples + kCompany * (used + kRoundSamples);
     if (search.num_agreeing >= 2) break;
   }
-  return conclude(search, i_rung);
+  return conclude(search);
 }
 
 template <class Robot>
-void Sampler<Robot>::reset_streams(const Search& search, int i_batch, int i_rung) SOPT_RT {
+void Sampler<Robot>::reset_streams(const Search& search) SOPT_RT {
   const SamplerProblem<Robot>& problem = *search.problem;
-  const StreamProblem<Robot> stream_problem{problem.robot, problem.world, *search.profile,
-                                            problem.start, problem.goal,  problem.options->sampler};
+  StreamProblem<Robot> stream_problem{problem.robot, problem.world, profile_of(search),
+                                      problem.start, problem.goal,  problem.options->sampler};
+  if (search.known != nullptr) stream_problem.max_length = search.known->length();
   auto reset_stream = [&](int /*i_worker*/, int i) {
     streams_[static_cast<std::size_t>(i)].reset(
-        stream_problem,
-        CounterRng(problem.seed, static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(i_batch),
-                   static_cast<std::uint64_t>(i_rung)));
+        stream_problem, CounterRng(problem.seed, static_cast<std::uint64_t>(i),
+                                   static_cast<std::uint64_t>(search.i_batch),
+                                   static_cast<std::uint64_t>(search.i_rung)));
   };
   const std::int64_t begin_ns = clock_.now_ns();
   executor_->run(Task(reset_stream), num_streams_);
   search.result->sample_ns += clock_.now_ns() - begin_ns;
   raw_length_.fill(0.0);
   graph_.clear();
+  if (search.known != nullptr) graph_.add(*search.known);
 }
 
 // Shortens the paths that the last round found and brings them in; false when there were none.
@@ -132,8 +150,9 @@ void Sampler<Robot>::shorten_path(const Search& search, int i_stream) SOPT_RT {
   raw_length_[i] = std::max(path.length(), std::numeric_limits<double>::min());  // 0: not taken yet
   shortcut_checks_[i] = 0;
   if (!problem.options->shortcut) return;
-  MotionChecker<Robot> checker(*problem.robot, *problem.world, *search.profile);
-  CounterRng rng(problem.seed, static_cast<std::uint64_t>(i_stream), kShortcutKey);
+  MotionChecker<Robot> checker(*problem.robot, *problem.world, profile_of(search));
+  CounterRng rng(problem.seed, static_cast<std::uint64_t>(i_stream), kShortcutKey,
+                 static_cast<std::uint64_t>(search.i_batch));
   shortcut_path(checker, rng, *search.deadline, path);
   shortcut_checks_[i] = checker.num_checks();
 }
@@ -145,9 +164,10 @@ void Sampler<Robot>::combine_paths(Search& search) SOPT_RT {
   const SamplerProblem<Robot>& problem = *search.problem;
   SamplerResult<Robot>& result = *search.result;
   if (result.path->vertices.size() == 2) return;  // straight: nothing is shorter
-  MotionChecker<Robot> checker(*problem.robot, *problem.world, *search.profile);
+  MotionChecker<Robot> checker(*problem.robot, *problem.world, profile_of(search));
   if (graph_.find_shorter(checker, *search.deadline, search.best_length, combined_)) {
-    CounterRng rng(problem.seed, static_cast<std::uint64_t>(kMaxStreams), kShortcutKey);
+    CounterRng rng(problem.seed, static_cast<std::uint64_t>(kMaxStreams), kShortcutKey,
+                   static_cast<std::uint64_t>(search.i_batch));
     shortcut_path(checker, rng, *search.deadline, combined_);
     const double length = combined_.length();
     if (length < search.best_length * (1.0 - kAgreement)) search.num_agreeing = 1;
@@ -158,7 +178,7 @@ void Sampler<Robot>::combine_paths(Search& search) SOPT_RT {
 }
 
 template <class Robot>
-SamplerStatus Sampler<Robot>::conclude(const Search& search, int i_rung) SOPT_RT {
+SamplerStatus Sampler<Robot>::conclude(const Search& search) SOPT_RT {
   SamplerResult<Robot>& result = *search.result;
   bool path_overflow = false;
   result.counts.nodes = 0;
@@ -168,7 +188,7 @@ SamplerStatus Sampler<Robot>::conclude(const Search& search, int i_rung) SOPT_RT
     path_overflow = path_overflow || stream.path_overflow();
   }
   if (result.path != nullptr) {
-    result.i_rung = i_rung;
+    result.i_rung = search.i_rung;
     return SamplerStatus::kOk;
   }
   if (search.deadline->expired()) return SamplerStatus::kDeadline;

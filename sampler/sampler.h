@@ -69,6 +69,14 @@ class Sampler {
   [[nodiscard]] SamplerResult<Robot> find_path(const SamplerProblem<Robot>& problem,
                                                const Deadline& deadline) SOPT_RT;
 
+  // Looks for a way shorter than `known`, a path that is clear under rung i_rung: one more batch of
+  // streams with random numbers of round i_round >= 0, of samples through which a path can be
+  // shorter, combined with `known`. The answer may be `known` itself, shortened anew, and kNoPath
+  // when no stream finds a path. `known` must not be a path of this sampler.
+  [[nodiscard]] SamplerResult<Robot> improve_path(const SamplerProblem<Robot>& problem, int i_rung,
+                                                  int i_round, const Path<Robot>& known,
+                                                  const Deadline& deadline) SOPT_RT;
+
   // Streams of the last call, for pictures.
   [[nodiscard]] int num_streams() const noexcept { return num_streams_; }
   [[nodiscard]] const SamplerStream<Robot>& stream(int i) const noexcept {
@@ -80,27 +88,31 @@ class Sampler {
   // rounds let more streams finish and compete, shorter ones stop earlier.
   static constexpr int kRoundSamples = 128;
 
-  [[nodiscard]] SamplerStatus search_rung(const SamplerProblem<Robot>& problem, int i_batch,
-                                          int i_rung, const Deadline& deadline,
-                                          SamplerResult<Robot>& result) SOPT_RT;
   // One rung of one batch.
   struct Search {
     const SamplerProblem<Robot>* problem = nullptr;
-    const MarginProfile* profile = nullptr;
     const Deadline* deadline = nullptr;
     SamplerResult<Robot>* result = nullptr;
+    int i_batch = 0;
+    int i_rung = 0;
+    const Path<Robot>* known = nullptr;  // to be improved
     double best_length = std::numeric_limits<double>::infinity();
     int num_agreeing = 0;  // paths about as short as the best
   };
 
+  [[nodiscard]] static const MarginProfile& profile_of(const Search& search) SOPT_RT {
+    return (*search.problem->ladder)[static_cast<std::size_t>(search.i_rung)];
+  }
+  void choose_streams(const PlanOptions& options) SOPT_RT;
+  [[nodiscard]] SamplerStatus run(Search& search) SOPT_RT;
   [[nodiscard]] std::span<const SamplerStream<Robot>> active_streams() const SOPT_RT {
     return std::span(streams_).first(static_cast<std::size_t>(num_streams_));
   }
-  void reset_streams(const Search& search, int i_batch, int i_rung) SOPT_RT;
+  void reset_streams(const Search& search) SOPT_RT;
   [[nodiscard]] bool take_new_paths(Search& search) SOPT_RT;
   void shorten_path(const Search& search, int i_stream) SOPT_RT;
   void combine_paths(Search& search) SOPT_RT;
-  [[nodiscard]] SamplerStatus conclude(const Search& search, int i_rung) SOPT_RT;
+  [[nodiscard]] SamplerStatus conclude(const Search& search) SOPT_RT;
 
   int max_streams_ = 0;
   int num_streams_ = 0;

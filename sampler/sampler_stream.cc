@@ -62,8 +62,13 @@ void SamplerStream<Robot>::run(int num_samples, const Deadline& deadline) SOPT_R
 template <class Robot>
 typename Robot::Config SamplerStream<Robot>::sample() SOPT_RT {
   Config q;
-  for (int dof = 0; dof < Robot::kDof; ++dof) {
-    q[dof] = box_lower_[dof] + box_size_[dof] * rng_.next_uniform();
+  for (int i = 0; i < kInformedTries; ++i) {
+    for (int dof = 0; dof < Robot::kDof; ++dof) {
+      q[dof] = box_lower_[dof] + box_size_[dof] * rng_.next_uniform();
+    }
+    const double through =
+        Robot::path_distance(problem_.start, q) + Robot::path_distance(q, problem_.goal);
+    if (through < problem_.max_length) break;
   }
   return q;
 }

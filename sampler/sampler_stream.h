@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "models/config.h"
 #include "models/point2.h"
@@ -29,6 +30,9 @@ struct StreamProblem {
   typename Robot::Config start{};
   typename Robot::Config goal{};
   SamplerMode mode = SamplerMode::kRrtStarConnect;
+  // Only configurations through which a path can be shorter than this are sampled [Gammell,
+  // Srinivasa, Barfoot 2014], as far as kInformedTries find them.
+  double max_length = std::numeric_limits<double>::infinity();
 };
 
 template <class Robot>
@@ -66,6 +70,7 @@ class SamplerStream {
  private:
   static constexpr std::size_t kStartTree = 0;
   static constexpr std::size_t kGoalTree = 1;
+  static constexpr int kInformedTries = 16;
   // A new node tries this many parents, cheapest cost first.
   static constexpr int kMaxParentTries = 6;
   // Steps of one tree towards a new node of the other.

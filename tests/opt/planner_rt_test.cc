@@ -31,7 +31,9 @@ TEST_F(PlannerContract, TakesExactlyWhatItRequires) {
   large.num_streams = 5;
   large.max_window = 40;
   large.rows_per_window = 100;
-  for (const PlannerSettings& settings : {small_settings(), large}) {
+  PlannerSettings dense = small_settings();
+  dense.dense_solver = true;
+  for (const PlannerSettings& settings : {small_settings(), large, dense}) {
     for (const int num_workers : {1, 3}) {
       class CountedExecutor final : public Executor {
        public:
@@ -92,6 +94,38 @@ TEST_F(PlannerContract, UsesNeitherHeapNorLockInItsFirstCallNorWhenItFails) {
   EXPECT_EQ(no_path, PlanStatus::kNoPath);
   EXPECT_EQ(bad_start, PlanStatus::kBadStart);
   EXPECT_EQ(failing.num_allocations() + failing.num_locks(), 0);
+}
+
+// With the paper's choices, and a world in which their result is refused.
+TEST_F(PlannerContract, UsesNeitherHeapNorLockInPaperMode) {
+  if (!RtGuard::available()) GTEST_SKIP() << "the guard cannot count under sanitizers";
+  PlannerSettings settings = small_settings();
+  settings.dense_solver = true;
+  TestPlanner dense(settings);
+  request_.options = PlanOptions::paper();
+  const auto plan_guarded = [&] {
+    RtGuard guard;
+    const PlanResult<Point2> result = dense.planner.plan(request_);
+    guard.stop();
+    EXPECT_EQ(result.status, PlanStatus::kOk);
+    EXPECT_EQ(guard.num_allocations(), 0);
+    EXPECT_EQ(guard.num_releases(), 0);
+    EXPECT_EQ(guard.num_locks(), 0);
+    return result.fell_back;
+  };
+  for (const RowMode rows : {RowMode::kLabelMap, RowMode::kWaypoint}) {
+    request_.options.rows = rows;
+    (void)plan_guarded();
+  }
+  set_scene({{{0.0, 0.0}, {10.0, 10.0}}, {{box_between({4.98, 0.5}, {5.02, 7.0})}}});
+  request_.start = {1.0, 2.0};
+  request_.goal = {9.0, 2.0};
+  request_.options.speed_mps = 10.0;
+  int num_fell_back = 0;
+  for (request_.seed = 1; request_.seed <= 10; ++request_.seed) {
+    num_fell_back += plan_guarded() ? 1 : 0;
+  }
+  EXPECT_GT(num_fell_back, 0);
 }
 
 TEST_F(PlannerContract, CausesNoPageFaultsOnceWarm) {
@@ -214,6 +248,20 @@ TEST_F(PlannerContract, AnswersTheSameForAnyNumberAndOrderOfWorkers) {
   }
 }
 
+TEST_F(PlannerContract, AnswersTheSameInPaperModeForAnyNumberAndOrderOfWorkers) {
+  PlannerSettings settings = small_settings();
+  settings.dense_solver = true;
+  BackwardExecutor backward;
+  TestPlanner one_worker(settings);
+  TestPlanner three_workers(settings, monotonic_clock(), backward);
+  request_.options = PlanOptions::paper();
+  for (request_.seed = 1; request_.seed <= 5; ++request_.seed) {
+    const std::vector<double> one = numbers_of(one_worker.planner.plan(request_));
+    ASSERT_FALSE(one.empty());
+    EXPECT_EQ(numbers_of(three_workers.planner.plan(request_)), one);
+  }
+}
+
 TEST_F(PlannerContract, AnswersTheSameOnThreads) {
   ThreadedExecutor threaded;
   TestPlanner other(small_settings(), monotonic_clock(), threaded);
@@ -229,7 +277,9 @@ class PlannerDeadline : public PlannerTest {
   // Plans with a clock that moves `step_ns` at each reading.
   PlanStatus plan_with_step(std::int64_t step_ns, double deadline_s) {
     ManualClock manual(step_ns);
-    TestPlanner timed(small_settings(), manual.clock());
+    PlannerSettings settings = small_settings();
+    settings.dense_solver = true;
+    TestPlanner timed(settings, manual.clock());
     request_.deadline_s = deadline_s;
     const PlanResult<Point2> result = timed.planner.plan(request_);
     if (static_cast<int>(result.status) >= 0) {
@@ -263,6 +313,16 @@ TEST_F(PlannerDeadline, IsKeptInEveryStage) {
     SCOPED_TRACE(i);
     (void)plan_with_step(1000, static_cast<double>(i) * 1e-6);
     EXPECT_LE(num_reads_, num_reads);
+  }
+}
+
+TEST_F(PlannerDeadline, IsKeptInEveryStageOfPaperMode) {
+  request_.options = PlanOptions::paper();
+  ASSERT_EQ(plan_with_step(1000, 1e9), PlanStatus::kOk);
+  const std::int64_t num_reads = num_reads_;
+  for (std::int64_t i = 1; i <= num_reads; i += std::max<std::int64_t>(1, num_reads / 200)) {
+    SCOPED_TRACE(i);
+    (void)plan_with_step(1000, static_cast<double>(i) * 1e-6);
   }
 }
 

@@ -201,5 +201,122 @@ TEST(Splits, KeepsTheParityOfWindowsDownstream) {
   }
 }
 
+TEST(Splits, MergesAsPrintedByTakingOutTheSharedEnd) {
+  InArena<Splits> splits(200);
+  ASSERT_TRUE(splits->try_reset(80, 4));  // 0 10 20 .. 80
+  ASSERT_TRUE(splits->try_merge_as_printed(2, 60));
+  EXPECT_EQ(indices_of(*splits), (std::vector<int>{0, 10, 20, 30, 50, 60, 70, 80}));
+  // What lay behind 40 has changed its parity.
+  EXPECT_EQ(ranges_of(*splits, Parity::kOdd), (Ranges{{0, 20}, {20, 50}, {50, 70}, {70, 80}}));
+  EXPECT_EQ(ranges_of(*splits, Parity::kEven), (Ranges{{0, 10}, {10, 30}, {30, 60}, {60, 80}}));
+  ASSERT_TRUE(splits->try_merge_as_printed(1, 60));
+  EXPECT_EQ(indices_of(*splits), (std::vector<int>{0, 10, 20, 50, 60, 70, 80}));
+}
+
+TEST(Splits, RefusesAPrintedMergeThatMakesAWindowOfEitherParityTooLong) {
+  InArena<Splits> splits(200);
+  ASSERT_TRUE(splits->try_reset(80, 4));
+  EXPECT_FALSE(splits->try_merge_as_printed(2, 29));
+  ASSERT_TRUE(splits->try_merge_as_printed(2, 30));  // 0 10 20 30 50 60 70 80
+  const std::vector<int> before = indices_of(*splits);
+  EXPECT_FALSE(splits->try_merge_as_printed(1, 39));  // [10,50] and [20,60]
+  EXPECT_FALSE(splits->try_merge_as_printed(0, 39));  // [10,50]
+  EXPECT_FALSE(splits->try_merge_as_printed(2, 39));  // [20,60]
+  EXPECT_EQ(indices_of(*splits), before);
+  EXPECT_TRUE(splits->try_merge_as_printed(1, 40));
+}
+
+TEST(Splits, RefusesAPrintedMergeWithoutTwoFullWindows) {
+  InArena<Splits> splits(200);
+  ASSERT_TRUE(splits->try_reset(40, 2));  // 0 10 20 30 40
+  const std::vector<int> before = indices_of(*splits);
+  for (const int i : {-5, -1, 1, 2, 3, 4, 5, 100}) {
+    EXPECT_FALSE(splits->try_merge_as_printed(i, 1000)) << i;
+  }
+  EXPECT_EQ(indices_of(*splits), before);
+  ASSERT_TRUE(splits->try_merge_as_printed(0, 1000));
+  EXPECT_EQ(indices_of(*splits), (std::vector<int>{0, 10, 30, 40}));
+  EXPECT_FALSE(splits->try_merge_as_printed(0, 1000));
+}
+
+TEST(Splits, NeverMergesAwayAsPrintedWhatWasSplit) {
+  InArena<Splits> splits(200);
+  ASSERT_TRUE(splits->try_reset(80, 4));
+  ASSERT_TRUE(splits->try_split(2));  // 0 10 20 25* 30 35* 40 50 60 70 80
+  EXPECT_FALSE(splits->try_merge_as_printed(1, 1000));
+  EXPECT_FALSE(splits->try_merge_as_printed(3, 1000));
+  EXPECT_TRUE(splits->try_merge_as_printed(2, 1000));
+  EXPECT_EQ(indices_of(*splits), (std::vector<int>{0, 10, 20, 25, 35, 40, 50, 60, 70, 80}));
+}
+
+TEST(Splits, MovesToAnotherHorizonInProportion) {
+  InArena<Splits> splits(200);
+  ASSERT_TRUE(splits->try_reset(80, 4));
+  ASSERT_TRUE(splits->try_merge(2, 60));  // 0 10 20 40 60 70 80
+  ASSERT_TRUE(splits->try_rescale(60));
+  // 7.5, 15, 30, 45, 52.5
+  EXPECT_EQ(indices_of(*splits), (std::vector<int>{0, 8, 15, 30, 45, 53, 60}));
+  ASSERT_TRUE(splits->try_rescale(200));
+  EXPECT_EQ(indices_of(*splits), (std::vector<int>{0, 27, 50, 100, 150, 177, 200}));
+}
+
+TEST(Splits, JoinsPointsThatFallTogether) {
+  InArena<Splits> splits(200);
+  ASSERT_TRUE(splits->try_reset(100, 5));  // 0 10 .. 100
+  ASSERT_TRUE(splits->try_rescale(4));
+  EXPECT_EQ(indices_of(*splits), (std::vector<int>{0, 1, 2, 3, 4}));
+  ASSERT_TRUE(splits->try_rescale(1));
+  EXPECT_EQ(indices_of(*splits), (std::vector<int>{0, 1}));
+  EXPECT_EQ(ranges_of(*splits, Parity::kOdd), (Ranges{{0, 1}}));
+  EXPECT_EQ(ranges_of(*splits, Parity::kEven), (Ranges{{0, 1}}));
+}
+
+TEST(Splits, StaysValidWhateverTheNewHorizon) {
+  InArena<Splits> splits(130);
+  for (int horizon = 1; horizon <= 130; horizon += 3) {
+    for (int to = 1; to <= 130; ++to) {
+      for (const int num_segments : {1, 3, 7, 40}) {
+        ASSERT_TRUE(splits->try_reset(horizon, num_segments));
+        ASSERT_TRUE(splits->try_rescale(to));
+        const std::vector<int> w = indices_of(*splits);
+        ASSERT_EQ(w.front(), 0);
+        ASSERT_EQ(w.back(), to);
+        for (std::size_t i = 1; i < w.size(); ++i) ASSERT_LT(w[i - 1], w[i]);
+      }
+    }
+  }
+}
+
+TEST(Splits, RefusesANewHorizonThatDoesNotFit) {
+  InArena<Splits> splits(100);
+  EXPECT_FALSE(splits->try_rescale(50)) << "there is no W yet";
+  ASSERT_TRUE(splits->try_reset(80, 4));
+  const std::vector<int> before = indices_of(*splits);
+  for (const int horizon : {-1, 0, 101, 1 << 30}) EXPECT_FALSE(splits->try_rescale(horizon));
+  EXPECT_EQ(indices_of(*splits), before);
+  EXPECT_TRUE(splits->try_rescale(100));
+}
+
+TEST(Splits, RemembersWhatWasSplitAtAnotherHorizon) {
+  InArena<Splits> splits(200);
+  ASSERT_TRUE(splits->try_reset(80, 4));
+  ASSERT_TRUE(splits->try_split(2));  // 0 10 20 25* 30 35* 40 50 60 70 80
+  ASSERT_TRUE(splits->try_rescale(160));
+  EXPECT_FALSE(splits->try_merge_as_printed(1, 1000));
+  EXPECT_FALSE(splits->try_merge_as_printed(3, 1000));
+  EXPECT_FALSE(splits->try_merge(2, 1000));
+  EXPECT_TRUE(splits->try_merge_as_printed(2, 1000));
+}
+
+TEST(Splits, KeepsAPointThatWasSplitWhenAnotherFallsOnIt) {
+  InArena<Splits> splits(200);
+  ASSERT_TRUE(splits->try_reset(80, 4));
+  ASSERT_TRUE(splits->try_split(2));    // 0 10 20 25* 30 35* 40 50 60 70 80
+  ASSERT_TRUE(splits->try_rescale(4));  // 30, 35*, and 40 all fall on 2
+  ASSERT_EQ(indices_of(*splits), (std::vector<int>{0, 1, 2, 3, 4}));
+  EXPECT_FALSE(splits->try_merge_as_printed(0, 1000));
+  EXPECT_EQ(indices_of(*splits), (std::vector<int>{0, 1, 2, 3, 4}));
+}
+
 }  // namespace
 }  // namespace sopt

@@ -245,5 +245,215 @@ TEST_F(WindowOptimizerTest, TouchesNoHeap) {
   EXPECT_EQ(guard.num_allocations() + guard.num_releases() + guard.num_locks(), 0);
 }
 
+// --- the paper's choices
+
+class WindowOptimizerChoices : public WindowOptimizerTest {
+ protected:
+  SweepProblem<Point2> problem_for(Points& states) {
+    return {&robot_, &test_.world, profile_, trust_m_, ds_m_, states};
+  }
+  // A floor with its top at y = 4, for a robot of 0.1 m with a margin of 0.1 m.
+  void use_floor() {
+    use({kBounds, {{oracle::box_between({0.5, 3.0}, {9.5, 4.0}), kDefaultMargin}}});
+  }
+  WindowResult run(const SweepProblem<Point2>& problem, int last) {
+    return with_dense_->optimize(problem, {0, last, 0, true}, Deadline());
+  }
+
+  InArena<WindowOptimizer<Point2>> with_dense_{[] {
+    PlannerSettings settings;
+    settings.dense_solver = true;
+    return settings;
+  }()};
+};
+
+TEST_F(WindowOptimizerChoices, SolvesTheSameWindowWithEitherSolver) {
+  Random random(21);
+  int num_active = 0;
+  for (int round = 0; round < 200; ++round) {
+    const Points way = oracle::random_polyline(random, kInner, 4);
+    use(oracle::random_scene_around(random, kBounds, way, 60, 0.6, 0.2));
+    Points closed_form = oracle::cut_into_steps(way, ds_m_);
+    Points dense = closed_form;
+    const int horizon = static_cast<int>(dense.size()) - 1;
+    const int first = random.index(horizon - 1);
+    const Window window = {first, std::min(horizon, first + 2 + random.index(59)), 0, true};
+    SweepProblem<Point2> problem = problem_for(closed_form);
+    problem.rows = static_cast<RowMode>(random.index(3));
+    problem.accept = random.chance(0.5);
+    problem.linearize_about_rest = random.chance(0.2);
+    const WindowResult expected = with_dense_->optimize(problem, window, Deadline());
+    problem.states = dense;
+    problem.solver = WindowSolver::kDense;
+    const WindowResult result = with_dense_->optimize(problem, window, Deadline());
+    ASSERT_EQ(result.qp_status, expected.qp_status);
+    ASSERT_EQ(result.status, expected.status);
+    EXPECT_EQ(result.has_active_rows, expected.has_active_rows);
+    for (std::size_t t = 0; t < dense.size(); ++t) {
+      ASSERT_LE((dense[t] - closed_form[t]).norm(), 1e-8) << t << oracle::to_text(scene_);
+    }
+    num_active += result.has_active_rows ? 1 : 0;
+  }
+  EXPECT_GT(num_active, 50);
+}
+
+TEST_F(WindowOptimizerChoices, TakesTheSolutionAsItIsWithoutACheck) {
+  use_floor();
+  // Below what the row asks for: the solution is longer than the reference.
+  Points states = {{4.0, 4.1}, {4.2, 4.1}, {4.4, 4.1}};
+  const Points before = states;
+  SweepProblem<Point2> problem = problem_for(states);
+  problem.rows = RowMode::kLabelMap;
+  EXPECT_EQ(run(problem, 2).cost_after, oracle::cost_of(before, ds_m_));
+  EXPECT_EQ(states, before);
+  problem.accept = false;
+  const WindowResult result = run(problem, 2);
+  EXPECT_EQ(result.status, WindowStatus::kMoved);
+  EXPECT_NEAR(states[1].x(), 4.2, kTol_m);
+  EXPECT_NEAR(states[1].y(), 4.2, kTol_m);
+  EXPECT_NEAR(result.displacement_m, 0.1, kTol_m);
+  EXPECT_GT(result.cost_after, result.cost_before);
+  EXPECT_NEAR(result.cost_after, oracle::cost_of(states, ds_m_), 1e-12);
+}
+
+TEST_F(WindowOptimizerChoices, PassesTheTrustRadiusWithoutACheck) {
+  use({kBounds, {}});
+  trust_m_ = 0.1;
+  Points states = {{1, 5}, {2, 8}, {3, 5}};
+  SweepProblem<Point2> problem = problem_for(states);
+  problem.accept = false;
+  EXPECT_EQ(run(problem, 2).status, WindowStatus::kMoved);
+  EXPECT_NEAR(states[1].y(), 5.0, 1e-12);
+  EXPECT_EQ(run(problem, 2).status, WindowStatus::kConverged);
+}
+
+TEST_F(WindowOptimizerChoices, LinearizesAboutTheFirstPointOfTheWindow) {
+  use_floor();
+  // At the reference y >= 4.2; about rest, which is 3.5 m higher, y >= 7.7.
+  const Points before = {{4.0, 8.0}, {4.2, 4.5}, {4.4, 4.5}};
+  Points states = before;
+  SweepProblem<Point2> problem = problem_for(states);
+  problem.rows = RowMode::kLabelMap;
+  problem.accept = false;
+  EXPECT_EQ(run(problem, 2).status, WindowStatus::kMoved);
+  EXPECT_NEAR(states[1].y(), 6.25, kTol_m);
+  states = before;
+  problem.linearize_about_rest = true;
+  EXPECT_EQ(run(problem, 2).status, WindowStatus::kMoved);
+  EXPECT_NEAR(states[1].y(), 7.7, kTol_m);
+  // Windows behind the first begin at their own first point.
+  states = {{0.6, 9.0}, {4.0, 8.0}, {4.2, 4.5}, {4.4, 4.5}, {5.0, 9.0}};
+  problem.states = states;
+  const WindowResult result = with_dense_->optimize(problem, {1, 3, 0, true}, Deadline());
+  EXPECT_EQ(result.status, WindowStatus::kMoved);
+  EXPECT_NEAR(states[2].y(), 7.7, kTol_m);
+}
+
+TEST_F(WindowOptimizerChoices, KeepOneRowOrAllOfAWaypoint) {
+  // A corridor along x about y = 5: the floor is a little nearer than the ceiling.
+  use({kBounds,
+       {{oracle::box_between({0.5, 3.0}, {9.5, 4.5}), kDefaultMargin},
+        {oracle::box_between({0.5, 5.3}, {9.5, 7.0}), kDefaultMargin}}});
+  const Points before = {{4.0, 6.0}, {4.2, 4.85}, {4.4, 6.0}};
+  Points states = before;
+  SweepProblem<Point2> problem = problem_for(states);
+  problem.accept = false;
+  problem.rows = RowMode::kLabelMap;
+  EXPECT_EQ(run(problem, 2).status, WindowStatus::kMoved);
+  EXPECT_NEAR(states[1].y(), 6.0, kTol_m) << "only the floor counts";
+  states = before;
+  problem.rows = RowMode::kWaypoint;
+  EXPECT_EQ(run(problem, 2).status, WindowStatus::kMoved);
+  EXPECT_NEAR(states[1].y(), 5.1, kTol_m) << "the ceiling counts too";
+}
+
+TEST_F(WindowOptimizerChoices, LeavesAWindowThatIsTooLongAlone) {
+  use({kBounds, {}});
+  Points states;
+  for (int t = 0; t <= 200; ++t) states.emplace_back(0.5 + 0.04 * t, 5.0 + 0.1 * (t % 2));
+  const Points before = states;
+  for (const RowMode rows : {RowMode::kEdge, RowMode::kWaypoint, RowMode::kLabelMap}) {
+    for (const WindowSolver solver : {WindowSolver::kClosedForm, WindowSolver::kDense}) {
+      SweepProblem<Point2> problem = problem_for(states);
+      problem.rows = rows;
+      problem.solver = solver;
+      problem.accept = false;
+      EXPECT_EQ(run(problem, settings_.max_window + 1).status, WindowStatus::kNoRows);
+      EXPECT_EQ(run(problem, 200).status, WindowStatus::kNoRows);
+      EXPECT_EQ(states, before);
+    }
+  }
+  SweepProblem<Point2> problem = problem_for(states);
+  problem.solver = WindowSolver::kDense;
+  EXPECT_EQ(run(problem, settings_.max_window).status, WindowStatus::kMoved);
+}
+
+TEST_F(WindowOptimizerChoices, FitsEveryRowThatTheClosedFormHolds) {
+  // Rows of a crowded window, more than rows_per_window but for its groups of four.
+  PlannerSettings settings;
+  settings.rows_per_window = 0;
+  settings.dense_solver = true;
+  InArena<WindowOptimizer<Point2>> small(settings);
+  use({kBounds,
+       {{oracle::box_between({0.5, 3.0}, {9.5, 4.5}), kDefaultMargin},
+        {oracle::box_between({0.5, 6.0}, {9.5, 7.0}), kDefaultMargin}}});
+  for (const WindowSolver solver : {WindowSolver::kClosedForm, WindowSolver::kDense}) {
+    Points states;
+    for (int t = 0; t <= 40; ++t) states.emplace_back(1.0 + 0.2 * t, 5.0 + 0.1 * (t % 2));
+    SweepProblem<Point2> problem = problem_for(states);
+    problem.rows = RowMode::kWaypoint;
+    problem.solver = solver;
+    const WindowResult result = small->optimize(problem, {0, 40, 0, true}, Deadline());
+    EXPECT_EQ(result.status, WindowStatus::kMoved);
+    EXPECT_EQ(result.qp_status, QpStatus::kOptimal);
+  }
+}
+
+TEST_F(WindowOptimizerChoices, SaysThatItHasNoDenseSolver) {
+  use({kBounds, {}});
+  Points states = {{1, 5}, {2, 8}, {3, 5}};
+  const Points before = states;
+  SweepProblem<Point2> problem = problem_for(states);
+  problem.solver = WindowSolver::kDense;
+  EXPECT_EQ(optimizer_->optimize(problem, {0, 2, 0, true}, Deadline()).status,
+            WindowStatus::kQpFailed);
+  EXPECT_EQ(states, before);
+}
+
+TEST_F(WindowOptimizerChoices, LeaveAWindowWithoutASolutionAlone) {
+  // A slot narrower than body and margin.
+  use({kBounds,
+       {{oracle::box_between({0.5, 4.0}, {9.5, 4.9}), kDefaultMargin},
+        {oracle::box_between({0.5, 5.1}, {9.5, 6.0}), kDefaultMargin}}});
+  Points states = {{4.0, 5.0}, {4.2, 5.0}, {4.4, 5.0}};
+  const Points before = states;
+  SweepProblem<Point2> problem = problem_for(states);
+  problem.rows = RowMode::kWaypoint;
+  problem.accept = false;
+  for (const WindowSolver solver : {WindowSolver::kClosedForm, WindowSolver::kDense}) {
+    problem.solver = solver;
+    const WindowResult result = run(problem, 2);
+    EXPECT_EQ(result.status, WindowStatus::kQpFailed);
+    EXPECT_EQ(result.qp_status, QpStatus::kInfeasible);
+    EXPECT_EQ(result.cost_after, result.cost_before);
+    EXPECT_EQ(states, before);
+  }
+}
+
+TEST_F(WindowOptimizerChoices, TouchNoHeap) {
+  if (!RtGuard::available()) GTEST_SKIP() << "this build cannot count allocations";
+  use_box_below_zigzag();
+  SweepProblem<Point2> problem = problem_for(zigzag_);
+  problem.rows = RowMode::kLabelMap;
+  problem.solver = WindowSolver::kDense;
+  problem.accept = false;
+  problem.linearize_about_rest = true;
+  RtGuard guard;
+  const WindowResult result = run(problem, whole_.last);
+  guard.stop();
+  EXPECT_NE(result.qp_status, QpStatus::kNotSolved);
+  EXPECT_EQ(guard.num_allocations() + guard.num_releases() + guard.num_locks(), 0);
+}
+
 }  // namespace
 }  // namespace sopt

@@ -419,9 +419,9 @@ void check_limit(Random& random, Fixture& f, const ClearReference& c, CaseReport
 
 std::string check_case(Random& random, CaseReport& report) {
   static Fixture f;
-  static const WorldStatus is_empty = fill({far_bounds(), {}}, f.empty.world);
+  static const WorldStatus kEmptyStatus = fill({far_bounds(), {}}, f.empty.world);
   const ClearReference c = random_clear_reference(random);
-  if (is_empty != WorldStatus::kOk || fill(c.scene, f.test.world) != WorldStatus::kOk) {
+  if (kEmptyStatus != WorldStatus::kOk || fill(c.scene, f.test.world) != WorldStatus::kOk) {
     report.fail("the world refuses a valid scene");
     return to_text(c);
   }

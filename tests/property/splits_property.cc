@@ -1,7 +1,7 @@
-// Split points under random merges and splits against a second implementation of the rules on a
-// plain vector: the same acceptance, the same W, cover without overlap in both parities, windows
-// downstream unchanged, the cap kept, points made by a split there for good, refusals without
-// effect.
+// Split points under random merges of both kinds, splits and rescalings against a second
+// implementation of the rules on a plain vector: the same acceptance, the same W, cover without
+// overlap in both parities, windows downstream of a paired merge unchanged, the cap kept, points
+// made by a split there for good, refusals without effect.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -84,6 +84,23 @@ void check_merge(Fixture& f, int i, int max_window, SplitsModel& model, CaseRepo
   }
 }
 
+void check_printed_merge(Fixture& f, int i, int max_window, SplitsModel& model,
+                         CaseReport& report) {
+  const bool expected = model.can_merge_as_printed(i, max_window);
+  report.expect("merges as printed exactly what may be merged",
+                f.splits->try_merge_as_printed(i, max_window) == expected);
+  if (expected) model.merge_as_printed(i);
+}
+
+// Returns the cap: a longer horizon stretches windows, points that fall together join splits.
+int check_rescale(Fixture& f, int horizon, int max_window, SplitsModel& model, CaseReport& report) {
+  const bool expected = model.can_rescale(horizon, kMaxHorizon);
+  report.expect("rescales to what fits", f.splits->try_rescale(horizon) == expected);
+  if (!expected) return max_window;
+  model.rescale(horizon);
+  return std::max(max_window, longest_window(f));
+}
+
 void check_split(Fixture& f, int i, SplitsModel& model, CaseReport& report) {
   const bool is_possible = model.can_split(i);
   if (!f.splits->try_split(i)) {
@@ -123,16 +140,25 @@ std::string check_case(Random& random, CaseReport& report) {
   }
   check_windows(f, model, report);
   // As in use: every window is within the cap before the first merge.
-  const int max_window = longest_window(f) + random.index(80);
+  int max_window = longest_window(f) + random.index(80);
   input += " cap " + std::to_string(max_window) + ":";
   for (int k = random.index(60); k > 0 && !report.failed(); --k) {
     const int i = random.index(model.size() + 2) - 1;
-    const bool merge = random.chance(0.7);
-    input += (merge ? " m" : " s") + std::to_string(i);
-    if (merge) {
+    const double kind = random.uniform(0.0, 1.0);
+    if (kind < 0.4) {
+      input += " m" + std::to_string(i);
       check_merge(f, i, max_window, model, report);
-    } else {
+    } else if (kind < 0.7) {
+      input += " p" + std::to_string(i);
+      check_printed_merge(f, i, max_window, model, report);
+    } else if (kind < 0.9) {
+      input += " s" + std::to_string(i);
       check_split(f, i, model, report);
+    } else {
+      const int now = model.w.back();
+      const int to = random.chance(0.8) ? now + random.index(21) - 15 : random.index(700);
+      input += " r" + std::to_string(to);
+      max_window = check_rescale(f, to, max_window, model, report);
     }
     check_windows(f, model, report);
     report.expect("the cap holds for both parities", longest_window(f) <= max_window);

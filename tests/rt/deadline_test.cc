@@ -99,5 +99,38 @@ TEST_F(DeadlineOnManualClock, IsUnchangedByAnEmptyReserve) {
   EXPECT_TRUE(same.expired());
 }
 
+TEST_F(DeadlineOnManualClock, TheEarliestOfTwoExpiresWithTheFirstOfThem) {
+  const Deadline soon(manual_.clock(), 0, 1e-6);
+  const Deadline late(manual_.clock(), 0, 2e-6);
+  const Deadline either = Deadline::earliest(soon, late);
+  const Deadline swapped = Deadline::earliest(late, soon);
+  manual_.advance(999);
+  EXPECT_FALSE(either.expired());
+  EXPECT_FALSE(swapped.expired());
+  manual_.advance(1);
+  EXPECT_TRUE(either.expired());
+  EXPECT_TRUE(swapped.expired());
+  EXPECT_FALSE(late.expired());
+}
+
+TEST_F(DeadlineOnManualClock, TheEarliestOfOneThatNeverExpiresIsTheOther) {
+  const Deadline soon(manual_.clock(), 0, 1e-6);
+  const Deadline first = Deadline::earliest(Deadline(), soon);
+  const Deadline second = Deadline::earliest(soon, Deadline());
+  EXPECT_FALSE(first.expired());
+  EXPECT_FALSE(second.expired());
+  manual_.advance(1000);
+  EXPECT_TRUE(first.expired());
+  EXPECT_TRUE(second.expired());
+}
+
+TEST_F(DeadlineOnManualClock, TheEarliestOfTwoThatNeverExpireReadsNoClock) {
+  const Deadline infinite(manual_.clock(), 0, kInfinity);
+  EXPECT_FALSE(Deadline::earliest(infinite, Deadline()).expired());
+  EXPECT_FALSE(Deadline::earliest(Deadline(), infinite).expired());
+  EXPECT_FALSE(Deadline::earliest(Deadline(), Deadline()).expired());
+  EXPECT_EQ(manual_.num_reads(), 0);
+}
+
 }  // namespace
 }  // namespace sopt

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "tests/support/test_problem.h"
 #include "tests/support/test_world.h"
 
@@ -148,6 +151,68 @@ TEST_P(SamplerStreamTest, ForgetsThePathAtReset) {
   stream->reset(problem_, CounterRng(9));
   EXPECT_FALSE(stream->has_path());
   EXPECT_LE(stream->num_nodes(), 2);
+}
+
+// Length of the way over q.
+double through(const StreamProblem<Point2>& problem, const Vec2& q) {
+  return (q - problem.start).norm() + (problem.goal - q).norm();
+}
+
+double longest_through(const StreamProblem<Point2>& problem, const SamplerStream<Point2>& stream) {
+  double longest = 0.0;
+  for (int i = 0; i < stream.num_nodes(); ++i) {
+    longest = std::max(longest, through(problem, stream.node(i)));
+  }
+  return longest;
+}
+
+// The ellipses are so large that hardly ever all tries miss them. A node lies between its parent
+// and a sample, and ellipses are convex.
+TEST_P(SamplerStreamTest, GrowsOnlyWhereAPathCanBeShorter) {
+  use(oracle::room_with_gap(0.0));
+  InArena<SamplerStream<Point2>> stream(small_settings());
+  const double straight = (problem_.goal - problem_.start).norm();
+  double everywhere = 0.0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    problem_.max_length = std::numeric_limits<double>::infinity();
+    stream->reset(problem_, CounterRng(seed));
+    stream->run(300, Deadline());
+    everywhere = std::max(everywhere, longest_through(problem_, *stream));
+    for (const double share : {1.3, 1.2}) {
+      problem_.max_length = share * straight;
+      stream->reset(problem_, CounterRng(seed));
+      stream->run(300, Deadline());
+      EXPECT_GT(stream->num_nodes(), 30);
+      EXPECT_LE(longest_through(problem_, *stream), problem_.max_length * (1.0 + 1e-12));
+    }
+  }
+  EXPECT_GT(everywhere, 1.4 * straight);
+}
+
+// No sample helps: the last of the tries is taken, and the search goes on as without a limit.
+TEST_P(SamplerStreamTest, GrowsSomewhereWhenNoPathCanBeShorter) {
+  use(oracle::room_with_gap(0.5));
+  InArena<SamplerStream<Point2>> stream(small_settings());
+  const double straight = (problem_.goal - problem_.start).norm();
+  for (const double max_length : {straight, 0.5 * straight, 0.0}) {
+    problem_.max_length = max_length;
+    stream->reset(problem_, CounterRng(10));
+    stream->run(3000, Deadline());
+    EXPECT_TRUE(stream->has_path());
+  }
+}
+
+TEST_P(SamplerStreamTest, GrowsTheSameTreesUnderALimitThatNoSampleExceeds) {
+  use(oracle::room_with_gap(0.0));
+  InArena<SamplerStream<Point2>> free(small_settings());
+  InArena<SamplerStream<Point2>> limited(small_settings());
+  free->reset(problem_, CounterRng(11));
+  problem_.max_length = 100.0;
+  limited->reset(problem_, CounterRng(11));
+  free->run(200, Deadline());
+  limited->run(200, Deadline());
+  ASSERT_EQ(free->num_nodes(), limited->num_nodes());
+  for (int i = 0; i < free->num_nodes(); ++i) EXPECT_EQ(free->node(i), limited->node(i));
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, SamplerStreamTest,

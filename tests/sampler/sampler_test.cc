@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <set>
 #include <vector>
 
 #include "tests/support/rt_guard.h"
@@ -238,6 +240,153 @@ TEST_P(SamplerTest, TouchesNoHeap) {
   EXPECT_EQ(result.status, SamplerStatus::kOk);
   EXPECT_EQ(guard.num_allocations() + guard.num_releases() + guard.num_locks(), 0);
 }
+
+// --- improve_path
+
+// Through the gap of room_with_gap, by a detour.
+class SamplerImproveTest : public SamplerTest {
+ protected:
+  void SetUp() override {
+    SamplerTest::SetUp();
+    use(oracle::room_with_gap(0.6));
+  }
+  SamplerResult<Point2> improve(Sampler<Point2>& sampler, const std::vector<Vec2>& known,
+                                int i_round = 0) {
+    known_.emplace_back(std::make_unique<oracle::TestPath>(known));
+    return sampler.improve_path(problem_, i_rung_, i_round, known_.back()->path, Deadline());
+  }
+  [[nodiscard]] std::vector<Vec2> detour() const {
+    return {problem_.start, {2.0, 4.5}, {4.0, 3.0}, {6.0, 3.0}, {8.0, 5.5}, problem_.goal};
+  }
+
+  int i_rung_ = 0;
+  std::vector<std::unique_ptr<oracle::TestPath>> known_;
+  InArena<Sampler<Point2>> sampler_{small_settings(), serial_, clock_.clock()};
+};
+
+TEST_P(SamplerImproveTest, ShortensADetourAndKeepsTheRung) {
+  set_margin(0.2);  // the gap lets the body through with 0.2 on each side
+  for (const int i_rung : {1, 3}) {
+    i_rung_ = i_rung;
+    for (problem_.seed = 1; problem_.seed <= 5; ++problem_.seed) {
+      const auto result = improve(*sampler_, detour());
+      check(result);
+      EXPECT_EQ(result.i_rung, i_rung);
+      EXPECT_LT(result.path->length(), 0.9 * oracle::length_of(detour()));
+    }
+  }
+}
+
+TEST_P(SamplerImproveTest, IsNeverLongerThanTheKnownPath) {
+  std::vector<Vec2> known = detour();
+  double length_m = oracle::length_of(known);
+  for (int i_round = 0; i_round < 30; ++i_round) {
+    const auto result = improve(*sampler_, known, i_round);
+    if (result.status == SamplerStatus::kNoPath) continue;  // there is hardly room for one
+    check(result);
+    EXPECT_LE(result.path->length(), length_m * (1.0 + 1e-12)) << i_round;
+    known = oracle::copy_of(result.path->vertices.span());
+    length_m = result.path->length();
+  }
+  // The least for a body of 0.1 and a margin of 0.05 at the lower edge of a gap of 0.6.
+  const double edge_m = 2.7 + 0.15;
+  const double bound_m =
+      (Vec2(5.0, edge_m) - problem_.start).norm() + (problem_.goal - Vec2(5.0, edge_m)).norm();
+  EXPECT_LT(length_m, 1.02 * bound_m);
+}
+
+TEST_P(SamplerImproveTest, FindsNothingShorterThanAStraightPath) {
+  const std::vector<Vec2> straight = {problem_.start, problem_.goal};
+  for (const bool has_obstacles : {false, true}) {
+    use({{Vec2::Zero(), {10.0, 6.0}}, {}});
+    if (has_obstacles) use({scene_.bounds, {{oracle::box_between({3.0, 3.0}, {6.0, 5.0})}}});
+    for (int i_round = 0; i_round < 5; ++i_round) {
+      const auto result = improve(*sampler_, straight, i_round);
+      if (result.path == nullptr) continue;
+      EXPECT_GE(result.path->length(), oracle::length_of(straight) * (1.0 - 1e-12));
+    }
+  }
+}
+
+TEST_P(SamplerImproveTest, SamplesOnlyWhereAPathCanBeShorter) {
+  // Half of the room is in the ellipse: sixteen tries do not all miss it.
+  const std::vector<Vec2> known = {problem_.start, {5.0, 4.5}, problem_.goal};
+  const double length_m = oracle::length_of(known);
+  for (int i_round = 0; i_round < 5; ++i_round) {
+    (void)improve(*sampler_, known, i_round);
+    for (int i = 0; i < sampler_->num_streams(); ++i) {
+      const SamplerStream<Point2>& stream = sampler_->stream(i);
+      for (int k = 0; k < stream.num_nodes(); ++k) {
+        const double through =
+            (stream.node(k) - problem_.start).norm() + (problem_.goal - stream.node(k)).norm();
+        EXPECT_LE(through, length_m * (1.0 + 1e-12));
+      }
+    }
+  }
+}
+
+TEST_P(SamplerImproveTest, DrawsOtherSamplesInEveryRoundThanInAnyBatch) {
+  options_.shortcut = false;
+  std::set<double> lengths = {sampler_->find_path(problem_, Deadline()).raw_length};
+  for (int i_round = 0; i_round < 4; ++i_round) {
+    lengths.insert(improve(*sampler_, detour(), i_round).raw_length);
+  }
+  EXPECT_EQ(lengths.size(), 5u);
+}
+
+TEST_P(SamplerImproveTest, GivesTheSameBytesOnEveryRunAndForEveryExecutor) {
+  oracle::ReverseExecutor reverse;
+  InArena<Sampler<Point2>> other(small_settings(), reverse, clock_.clock());
+  for (int i_round = 0; i_round < 5; ++i_round) {
+    const auto a = improve(*sampler_, detour(), i_round);
+    check(a);
+    const std::vector<Vec2> path = oracle::copy_of(a.path->vertices.span());
+    const auto b = improve(*other, detour(), i_round);
+    check(b);
+    EXPECT_TRUE(oracle::same_bytes(path, b.path->vertices.span())) << i_round;
+    EXPECT_EQ(a.counts.edges, b.counts.edges);
+    EXPECT_TRUE(oracle::same_bytes(path, improve(*sampler_, detour(), i_round).path->vertices))
+        << i_round;
+  }
+}
+
+TEST_P(SamplerImproveTest, LeavesNoTraceInTheNextSearch) {
+  const auto before = sampler_->find_path(problem_, Deadline());
+  check(before);
+  const std::vector<Vec2> path = oracle::copy_of(before.path->vertices.span());
+  (void)improve(*sampler_, detour());
+  const auto after = sampler_->find_path(problem_, Deadline());
+  EXPECT_TRUE(oracle::same_bytes(path, after.path->vertices.span()));
+}
+
+TEST_P(SamplerImproveTest, StopsAtItsDeadline) {
+  use(oracle::room_with_gap(0.0));
+  const oracle::TestPath known(detour());
+  for (const double deadline_s : {0.0, 1e-6, 100e-6}) {
+    ManualClock clock(1000);
+    const auto result =
+        sampler_->improve_path(problem_, 0, 0, known.path, Deadline(clock.clock(), 0, deadline_s));
+    EXPECT_EQ(result.status, SamplerStatus::kDeadline);
+    EXPECT_EQ(result.path, nullptr);
+    EXPECT_LE(clock.num_reads(), 150);
+  }
+}
+
+TEST_P(SamplerImproveTest, TouchesNoHeap) {
+  if (!RtGuard::available()) GTEST_SKIP() << "this build cannot count allocations";
+  const oracle::TestPath known(detour());
+  RtGuard guard;
+  const auto result = sampler_->improve_path(problem_, 0, 0, known.path, Deadline());
+  guard.stop();
+  EXPECT_EQ(result.status, SamplerStatus::kOk);
+  EXPECT_EQ(guard.num_allocations() + guard.num_releases() + guard.num_locks(), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, SamplerImproveTest,
+                         ::testing::Values(SamplerMode::kRrtStar, SamplerMode::kRrtStarConnect),
+                         [](const auto& test) {
+                           return test.param == SamplerMode::kRrtStar ? "OneTree" : "TwoTrees";
+                         });
 
 INSTANTIATE_TEST_SUITE_P(Modes, SamplerTest,
                          ::testing::Values(SamplerMode::kRrtStar, SamplerMode::kRrtStarConnect),

@@ -1,5 +1,5 @@
 // The split points W as a plain vector with the rules of opt/splits.h written out again: what a
-// merge or a split must do, and when it must be refused. For tests.
+// merge, a rescaling or a split must do, and when it must be refused. For tests.
 #pragma once
 
 #include <cmath>
@@ -37,6 +37,30 @@ struct SplitsModel {
   void merge(int i) {
     w.erase(w.begin() + i + 3);
     w.erase(w.begin() + i + 1);
+  }
+
+  // As printed: the end that both windows share goes, and with it the cuts of the middle split.
+  [[nodiscard]] bool can_merge_as_printed(int i, int max_window) const {
+    if (i < 0 || i + 4 >= size() || pinned.count(at(i + 2)) != 0) return false;
+    return at(i + 3) - at(i) <= max_window && at(i + 4) - at(i + 1) <= max_window;
+  }
+  void merge_as_printed(int i) { w.erase(w.begin() + i + 2); }
+
+  // Every point in proportion, halves up; a point that several fall on is pinned when one was.
+  [[nodiscard]] bool can_rescale(int horizon, int max_horizon) const {
+    return horizon >= 1 && horizon <= max_horizon;
+  }
+  void rescale(int horizon) {
+    const long long old_horizon = w.back();
+    std::set<int> points;
+    std::set<int> new_pinned;
+    for (const int point : w) {
+      const int moved = static_cast<int>((2LL * point * horizon + old_horizon) / (2 * old_horizon));
+      points.insert(moved);
+      if (pinned.count(point) != 0) new_pinned.insert(moved);
+    }
+    w.assign(points.begin(), points.end());
+    pinned = new_pinned;
   }
 
   [[nodiscard]] bool can_split(int i) const {

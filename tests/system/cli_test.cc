@@ -145,6 +145,71 @@ TEST_F(CliTest, SceneValuesHoldAndOptionsGoBefore) {
   EXPECT_LT(plan["certificate"]["worst_limit_margin"], 1.0);
 }
 
+TEST_F(CliTest, PaperModePlansAndVerifies) {
+  for (const std::string options :
+       {"--paper", "--paper --rows waypoint --qp kernel", "--paper --merge-rule paired",
+        "--rows label_map --no-accept", "--qp dense --start zero_input", "--resample rediscretise",
+        "--paper --segments 9 --no-merge --max-window 10"}) {
+    SCOPED_TRACE(options);
+    const ProgramRun planned = run("plan scene.json -o plan.json --seed 3 " + options);
+    ASSERT_EQ(planned.exit_code, 0) << planned.out << planned.err;
+    const json plan = read_json("plan.json");
+    EXPECT_EQ(plan["status"], "ok");
+    EXPECT_EQ(plan["states"].size(), plan["horizon"].get<std::size_t>() + 1);
+    EXPECT_EQ(plan["inputs"].size(), plan["horizon"].get<std::size_t>());
+    const ProgramRun verified = run("verify scene.json plan.json --json answer.json");
+    EXPECT_EQ(verified.exit_code, 0) << verified.out << verified.err;
+    EXPECT_EQ(read_json("answer.json")["certificate"], plan["certificate"]);
+  }
+}
+
+TEST_F(CliTest, PaperModeMakesTheSameMotionTwice) {
+  ASSERT_EQ(run("plan scene.json --paper --seed 5 -o a.json --csv a.csv").exit_code, 0);
+  ASSERT_EQ(run("plan scene.json --paper --seed 5 -o b.json --csv b.csv --repeat 3").exit_code, 0);
+  EXPECT_EQ(read("a.csv"), read("b.csv"));
+  for (const char* name : {"dt_s", "states", "inputs", "path", "cost", "certificate", "counts"}) {
+    EXPECT_EQ(read_json("a.json")[name], read_json("b.json")[name]) << name;
+  }
+  // It is not what is planned without it.
+  ASSERT_EQ(run("plan scene.json --seed 5 -o c.json").exit_code, 0);
+  EXPECT_NE(read_json("a.json")["states"], read_json("c.json")["states"]);
+}
+
+TEST_F(CliTest, PaperModeKeepsTheTimeStepAndCountsSteps) {
+  ASSERT_EQ(run("plan scene.json --paper --speed 2 --dt 0.1 -o plan.json").exit_code, 0);
+  const json plan = read_json("plan.json");
+  EXPECT_EQ(plan["dt_s"], 0.1);
+  // A step is 0.2 m: the horizon follows the path, but for what the last sweep has saved.
+  const double needed = plan["path_length"].get<double>() / 0.2;
+  EXPECT_GE(plan["horizon"], needed * (1.0 - 1e-9));
+  EXPECT_LE(plan["horizon"], 1.1 * needed + 2.0);
+}
+
+TEST_F(CliTest, PlanZeroThatLeavesInPaperModeVerifies) {
+  // Steps of 1 m over a wall of 0.04 m: waypoint rows let the optimised plan through it.
+  json scene = json::parse(good_scene());
+  const json wall = {{"type", "box"}, {"center", {5, 2.5}}, {"size", {0.04, 5}}};
+  scene["obstacles"] = json::array({wall});
+  write("scene.json", scene.dump());
+  for (const std::string seed : {"1", "2", "3", "4", "5"}) {
+    SCOPED_TRACE(seed);
+    ASSERT_EQ(run("plan scene.json --paper --speed 10 -o plan.json --svg plan.svg --seed " + seed)
+                  .exit_code,
+              0);
+    const json plan = read_json("plan.json");
+    EXPECT_EQ(plan["status"], "ok");
+    EXPECT_EQ(run("verify scene.json plan.json").exit_code, 0);
+    double length_m = 0.0;
+    for (std::size_t t = 1; t < plan["states"].size(); ++t) {
+      const json& a = plan["states"][t - 1];
+      const json& b = plan["states"][t];
+      length_m += std::hypot(b[0].get<double>() - a[0].get<double>(),
+                             b[1].get<double>() - a[1].get<double>());
+    }
+    EXPECT_NEAR(plan["path_length"], length_m, 1e-9);
+  }
+}
+
 TEST_F(CliTest, SpeedAboveTheLimitIsWrongUsage) {
   write_scene("limits", {{"v_max", 1.0}});
   const ProgramRun result = run("plan scene.json --speed 1.5 -o plan.json");

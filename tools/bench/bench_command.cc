@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "tools/bench/bench_improve_command.h"
 #include "tools/bench/bench_plan.h"
 #include "tools/bench/bench_qp_command.h"
 #include "tools/bench/bench_report.h"
+#include "tools/bench/bench_scaling_command.h"
 #include "tools/cli/option_checks.h"
 #include "tools/io/input_error.h"
 #include "tools/io/json_text.h"
@@ -96,6 +98,8 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   add_algorithm_options(*command, arguments->options.algorithm);
   command->callback([arguments, &exit_code] { exit_code = run_bench_plan(*arguments); });
   add_bench_qp_command(*bench, exit_code);
+  add_bench_improve_command(*bench, exit_code);
+  add_bench_scaling_command(*bench, exit_code);
 }
 
 }  // namespace sopt

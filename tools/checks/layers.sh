@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Dependencies between folders go one way:
 #   rt -> alloc -> models -> {sampler, opt/qp -> opt core} -> opt/planner -> tools -> tests
-# and in tools: io -> {cli -> qp, scenes} -> bench -> {peers, main and the commands}.
+# and in tools: io -> {cli -> qp, scenes} -> bench -> {tables, peers} -> main and the commands.
 # Every #include "..." names a file by its path from the project's root, and that file may be used
 # from the including file's layer. Prints each violation; exit code 1 when there is one.
 # usage: layers.sh [ROOT]
@@ -19,7 +19,7 @@ layer_of() {
 }
 
 libraries="rt alloc models sampler qp opt planner"
-tool_rooms="tools/io tools/cli tools/qp tools/scenes tools/bench tools/peers"
+tool_rooms="tools/io tools/cli tools/qp tools/scenes tools/bench tools/tables tools/peers"
 declare -A may_use=(
   [rt]="rt"
   [alloc]="rt alloc"
@@ -33,7 +33,8 @@ declare -A may_use=(
   [tools/qp]="$libraries tools/io tools/cli tools/qp"
   [tools/scenes]="$libraries tools/io tools/scenes"
   [tools/bench]="$libraries tools/io tools/cli tools/qp tools/scenes tools/bench"
-  [tools/peers]="$libraries $tool_rooms"
+  [tools/tables]="$libraries tools/io tools/cli tools/qp tools/scenes tools/bench tools/tables"
+  [tools/peers]="$libraries tools/io tools/cli tools/qp tools/scenes tools/bench tools/peers"
   [tools]="$libraries $tool_rooms tools"
   [tests]="$libraries $tool_rooms tools tests"
 )

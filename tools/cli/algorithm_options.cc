@@ -134,6 +134,11 @@ void take_choices(const PlanOptions& from, PlanOptions& plan) {
 void add_algorithm_options(CLI::App& command, AlgorithmOptions& options) {
   add_sampler_options(command, options);
   add_optimizer_options(command, options);
+  command
+      .add_option("--improve-ms", options.improve_ms,
+                  "After the first plan, search for shorter ones this long [0]")
+      ->type_name("T")
+      ->check(number_check({0.0, 1e9, "a number from 0 to 1e9"}));
   command.add_option("--margin", options.margin_m, "Clearance wanted, m [0.05]")
       ->type_name("M")
       ->check(number_check(kNotNegative));
@@ -160,6 +165,7 @@ void apply(const AlgorithmOptions& options, PlanOptions& plan) {
   if (options.no_merge) plan.merge = MergeRule::kOff;
   if (options.no_shortcut) plan.shortcut = false;
   if (options.no_accept) plan.accept = false;
+  if (options.improve_ms) plan.improve_s = *options.improve_ms / 1000.0;
   plan.margin_m = options.margin_m.value_or(plan.margin_m);
   plan.speed_mps = options.speed_mps.value_or(plan.speed_mps);
   plan.dt_s = options.dt_s.value_or(plan.dt_s);
@@ -180,6 +186,7 @@ nlohmann::ordered_json to_json(const AlgorithmOptions& options) {
           {"accept", plan.accept},
           {"merge", word_of(merge_rules(), plan.merge)},
           {"resample", word_of(resamplings(), plan.resampling)},
+          {"improve_ms", to_json(options.improve_ms)},
           {"margin", to_json(options.margin_m)},
           {"speed", to_json(options.speed_mps)},
           {"dt", to_json(options.dt_s)}};

@@ -21,6 +21,7 @@ struct AlgorithmOptions {
   bool no_shortcut = false;
   bool no_accept = false;
   std::optional<std::string> sampler, rows, resample, merge_rule, qp, start;
+  std::optional<double> improve_ms;
   std::optional<double> margin_m;
   std::optional<double> speed_mps;
   std::optional<double> dt_s;

@@ -244,5 +244,58 @@ TEST(PointRows, ShortensAStepTowardsTheReference) {
   EXPECT_EQ(rows->position(1), reference[1]);
 }
 
+TEST(PointRows, ShiftsBoundsByWhatTheWaypointsMove) {
+  Random random(5);
+  InArena<PointRows> rows(60, 512);
+  InArena<PointRows> expected(60, 512);
+  InArena<ActiveSetQp<double>> solver(120);
+  for (int round = 0; round < 100; ++round) {
+    SegmentQp qp = oracle::random_feasible_qp(random, 2 + random.index(59), 1 + random.index(60));
+    ASSERT_TRUE(oracle::fill(qp, *rows));
+    std::vector<Vec2> offsets;
+    for (int t = 0; t <= qp.num_steps; ++t) {
+      offsets.emplace_back(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+    }
+    rows->shift_bounds(offsets.data());
+    for (auto& row : qp.rows) {
+      row.bound += row.normal.dot(offsets[static_cast<std::size_t>(row.t)]);
+    }
+    ASSERT_TRUE(oracle::fill(qp, *expected));
+    ASSERT_EQ(rows->num_ids(), expected->num_ids());
+    for (int id = 0; id < rows->num_ids(); ++id) {
+      ASSERT_EQ(rows->is_free(id), expected->is_free(id)) << "padding";
+      if (rows->is_free(id)) {
+        EXPECT_NEAR(rows->row(id).bound, expected->row(id).bound, 1e-12);
+      }
+    }
+    // What is priced has moved too; shifted rows may contradict each other.
+    const auto shifted = solver->solve(*rows, {}, Deadline());
+    const auto direct = solver->solve(*expected, {}, Deadline());
+    ASSERT_EQ(shifted.status, direct.status);
+    if (direct.status != QpStatus::kOptimal) continue;
+    for (int t = 0; t <= qp.num_steps; ++t) {
+      EXPECT_LE((rows->position(t) - expected->position(t)).norm(), 1e-9);
+    }
+  }
+}
+
+TEST(PointRows, StandsWhereItIsPut) {
+  InArena<PointRows> rows(10, 16);
+  rows->reset(3, Vec2::Zero(), {3.0, 0.0});
+  ASSERT_TRUE(rows->try_add(1, Vec2::UnitY(), 1.5));
+  ASSERT_TRUE(rows->try_add(2, Vec2::UnitX(), 1.0));
+  const Vec2 points[] = {{9.0, 9.0}, {1.0, 1.0}, {2.0, -1.0}, {9.0, 9.0}};
+  rows->set_positions(points);
+  EXPECT_EQ(rows->position(1), points[1]);
+  EXPECT_EQ(rows->position(2), points[2]);
+  // The ends are fixed.
+  EXPECT_EQ(rows->position(0), Vec2(0.0, 0.0));
+  EXPECT_EQ(rows->position(3), Vec2(3.0, 0.0));
+  const int found = rows->most_violated(0.0);
+  EXPECT_EQ(found, 0);
+  EXPECT_NEAR(rows->violation(found), 0.5, 1e-15);
+  EXPECT_EQ(rows->most_violated(0.5), -1);
+}
+
 }  // namespace
 }  // namespace sopt

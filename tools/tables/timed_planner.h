@@ -1,0 +1,63 @@
+// One scene's planner for any choices, and what one case costs on it. Times are thread CPU time,
+// medians over kNumTimedCalls calls; the tasks behind the critical path come from one more call
+// before them, which also brings the choices' code and memory into the caches.
+#pragma once
+
+#include <cstdint>
+
+#include "alloc/arena.h"
+#include "alloc/memory_block.h"
+#include "opt/planner.h"
+#include "tools/cli/algorithm_options.h"
+#include "tools/io/scene_file.h"
+#include "tools/tables/timing_executor.h"
+
+namespace sopt {
+
+inline constexpr int kNumTimedCalls = 3;
+// One window over the whole horizon of a shipped scene (N = 1).
+inline constexpr int kLongestWindow = 320;
+
+struct StageTime {
+  double serial_us = 0.0;
+  double critical_us = 0.0;  // one worker per stream or window
+};
+
+// One plan.
+struct TableCase {
+  bool has_plan = false;
+  bool fell_back = false;  // the optimiser's trajectory did not pass verify
+  StageTime sample;        // with shortcutting
+  StageTime optimize;
+  StageTime total;                // verify and the rest too
+  double sampled_length_m = 0.0;  // as the sampler found it
+  double length_m = 0.0;          // of the plan
+  int iterations = 0;
+  int segments_initial = 0;
+  int segments_final = 0;
+
+  [[nodiscard]] bool succeeded() const { return has_plan && !fell_back; }
+};
+
+class TimedPlanner {
+ public:
+  // Throws HostError when there is no memory. `scene` must outlive it.
+  explicit TimedPlanner(const Scene& scene);
+
+  // The scene's request with `choices` over the scene's options.
+  [[nodiscard]] PlanRequest<Point2> make_request(const AlgorithmOptions& choices,
+                                                 std::uint64_t seed) const;
+  [[nodiscard]] TableCase measure(const PlanRequest<Point2>& request);
+
+  [[nodiscard]] Planner<Point2>& planner() { return planner_; }
+
+ private:
+  const Scene* scene_;
+  TimingExecutor executor_;
+  PlannerSettings settings_;
+  MemoryBlock memory_;
+  Arena arena_;
+  Planner<Point2> planner_;
+};
+
+}  // namespace sopt

@@ -1,0 +1,12 @@
+// `sopt tables plane`: the planar table and figures of the paper made again (tools/tables).
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace sopt {
+
+// Registers the subcommand; when it was run, `exit_code` says how that ended: 1 when a case had no
+// plan.
+void add_tables_command(CLI::App& app, int& exit_code);
+
+}  // namespace sopt
