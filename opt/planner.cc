@@ -217,7 +217,9 @@ void Planner<Robot>::improve(Slot& slot, Call& call, PlanResult<Robot>& result) 
   const Deadline until =
       Deadline::earliest(call.deadline.earlier_by(2.0 * reserve_s),
                          Deadline(clock_, clock_.now_ns(), request.options.improve_s));
-  for (int i_round = 0; i_round < kMaxImproveRounds && !until.expired(); ++i_round) {
+  // A straight path is the shortest there is.
+  const auto may_improve = [&] { return known_path_.vertices.size() > 2 && !until.expired(); };
+  for (int i_round = 0; i_round < kMaxImproveRounds && may_improve(); ++i_round) {
     const SamplerResult<Robot> sampled =
         sampler_.improve_path({&robot_, request.world, request.start, request.goal, &call.ladder,
                                request.seed, &request.options},
@@ -229,7 +231,9 @@ void Planner<Robot>::improve(Slot& slot, Call& call, PlanResult<Robot>& result) 
     (void)known_path_.vertices.try_assign(sampled.path->vertices.span());
     if (!make_reference(known_path_, call.step_length, request.options.dt_s, candidate_)) continue;
     const OptimizerResult<Robot> optimized = optimize(call, until, candidate_);
-    if (optimized.history.back().path_length >= result.path_length) continue;
+    if (optimized.history.empty() || optimized.history.back().path_length >= result.path_length) {
+      continue;
+    }
     if (try_replace(call, optimized, slot, result)) record_improvement(call, result);
   }
 }

@@ -2,7 +2,8 @@
 // [Leu22, Alg. 1]. Construct once from an arena (may fail, may block), then call `plan` as often as
 // wanted from one thread: no heap, no lock, no system call, no unbounded loop. The answer depends
 // on the request alone: the same bytes on every run and for any number of workers, unless the clock
-// cuts it short (status kDeadlineFeasible, still verified).
+// cuts it short (status kDeadlineFeasible, still verified) or improve_s lets it say how far to
+// search.
 #pragma once
 
 #include <array>
@@ -101,7 +102,7 @@ struct PlanResult {
   int segments_final = 0;
   std::span<const IterationRecord> history;  // entry 0 is the reference
   std::span<const int> splits;               // final W, see opt/splits.h
-  // With improve_s > 0: entry 0 is the first plan, the last one is `plan`.
+  // With improve_s > 0 and kOk: entry 0 is the first plan, the last one is `plan`.
   std::span<const ImprovementRecord> improvements;
   SamplerCounts sampler_counts;
   OptimizerCounts optimizer_counts;

@@ -52,7 +52,7 @@ SamplerResult<Robot> Sampler<Robot>::improve_path(const SamplerProblem<Robot>& p
                                                   const Deadline& deadline) SOPT_RT {
   choose_streams(*problem.options);
   SamplerResult<Robot> result;
-  Search search{&problem, &deadline, &result, problem.options->num_batches + i_round,
+  Search search{&problem, &deadline, &result, std::int64_t{problem.options->num_batches} + i_round,
                 i_rung,   &known};
   result.status = run(search);
   return result;

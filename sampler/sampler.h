@@ -93,7 +93,7 @@ class Sampler {
     const SamplerProblem<Robot>* problem = nullptr;
     const Deadline* deadline = nullptr;
     SamplerResult<Robot>* result = nullptr;
-    int i_batch = 0;
+    std::int64_t i_batch = 0;
     int i_rung = 0;
     const Path<Robot>* known = nullptr;  // to be improved
     double best_length = std::numeric_limits<double>::infinity();

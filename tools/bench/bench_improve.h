@@ -23,8 +23,8 @@ inline constexpr double kGoodLengthRatio = 1.03;
 struct BenchImproveOptions {
   std::vector<double> budgets_ms = {0, 1, 2, 5, 10, 20, 50, 100, 200};  // increasing, not empty
   int num_seeds = 8;                                                    // 1..num_seeds
-  // Does not count what other programs take, but reading it is a system call: about half of the
-  // budget goes into that. What it measures is what half the time gives by the monotonic clock.
+  // CPU time does not count what other programs take, but reading it is a system call, into which
+  // about half of the budget goes.
   Clock clock = thread_cpu_clock();
 };
 
