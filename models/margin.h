@@ -69,4 +69,7 @@ struct MarginProfile {
   }
 };
 
+// One profile per rung, widest first.
+using MarginLadder = std::array<MarginProfile, kMarginRungs.size()>;
+
 }  // namespace sopt

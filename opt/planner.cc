@@ -4,7 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "opt/margin_ladder.h"
 #include "opt/reference.h"
+#include "opt/request_rules.h"
 #include "opt/time_scaling.h"
 #include "rt/float_env.h"
 
@@ -15,16 +17,15 @@ namespace {
 constexpr double kVerifyPerStep_s = 1e-6;
 constexpr double kVerifyPerBox_s = 1e-8;  // per obstacle and run of 16 steps
 
-// A rung never asks for less than the hard clearance plus what the rows' tolerance may lose.
-constexpr double kFloorGuard_m = 1e-8;
-
 // A path has to be this much shorter, relative, to be worth optimising: below it is the same way.
 constexpr double kWorthwhileGain = 1e-3;
 constexpr int kMaxImproveRounds = 1 << 20;
 
+// Twice one verification: a result that is refused is followed by plan 0, an improvement is
+// verified before and after it takes its place.
 double verify_reserve_s(int horizon, int num_obstacles) noexcept {
   const double runs = horizon / 16.0 + 1.0;
-  return kVerifyPerStep_s * horizon + kVerifyPerBox_s * runs * num_obstacles;
+  return 2.0 * (kVerifyPerStep_s * horizon + kVerifyPerBox_s * runs * num_obstacles);
 }
 
 template <class Robot>
@@ -142,7 +143,7 @@ void Planner<Robot>::plan_into(Slot& slot, Call& call, PlanResult<Robot>& result
     fail(result, PlanStatus::kBadInput, PlanStage::kRequest, "speed_mps times dt_s is too small");
     return;
   }
-  call.ladder = make_ladder(request, call.step_length);
+  call.ladder = make_margin_ladder(robot_, request, call.step_length, settings_.max_horizon);
   std::int64_t stage_ns = clock_.now_ns();
   const auto lap_ns = [&] {
     const std::int64_t before_ns = stage_ns;
@@ -154,9 +155,8 @@ void Planner<Robot>::plan_into(Slot& slot, Call& call, PlanResult<Robot>& result
   (void)lap_ns();
   if (!make_plan_0(call, slot.trajectory, result)) return;
   result.times.reference_ns = lap_ns();
-  // Twice: what is refused is followed by plan 0.
   const double reserve_s =
-      2.0 * verify_reserve_s(slot.trajectory.horizon(), request.world->num_obstacles());
+      verify_reserve_s(slot.trajectory.horizon(), request.world->num_obstacles());
   const OptimizerResult<Robot> optimized =
       optimize(call, call.deadline.earlier_by(reserve_s), slot.trajectory);
   report_optimizer(optimized, result);
@@ -215,7 +215,7 @@ void Planner<Robot>::improve(Slot& slot, Call& call, PlanResult<Robot>& result) 
   const double reserve_s =
       verify_reserve_s(slot.trajectory.horizon(), request.world->num_obstacles());
   const Deadline until =
-      Deadline::earliest(call.deadline.earlier_by(2.0 * reserve_s),
+      Deadline::earliest(call.deadline.earlier_by(reserve_s),
                          Deadline(clock_, clock_.now_ns(), request.options.improve_s));
   // A straight path is the shortest there is.
   const auto may_improve = [&] { return known_path_.vertices.size() > 2 && !until.expired(); };
@@ -264,51 +264,13 @@ void Planner<Robot>::record_improvement(const Call& call, PlanResult<Robot>& res
 template <class Robot>
 bool Planner<Robot>::check_request(const PlanRequest<Robot>& request,
                                    PlanResult<Robot>& result) const SOPT_RT {
-  const PlanOptions& o = request.options;
-  struct Rule {
-    bool holds;
-    const char* reason;
-    double value;
-  };
-  const auto positive = [](double v) { return v > 0.0 && std::isfinite(v); };
-  const auto not_negative = [](double v) { return v >= 0.0 && std::isfinite(v); };
-  const Rule rules[] = {
-      {is_ready_, "the planner has invalid settings or too little memory", 0.0},
-      {request.world != nullptr, "world is missing", 0.0},
-      {request.start.allFinite(), "start is not finite", 0.0},
-      {request.goal.allFinite(), "goal is not finite", 0.0},
-      {request.deadline_s > 0.0, "deadline_s must be positive", request.deadline_s},
-      {not_negative(o.speed_mps), "speed_mps must be finite and not negative", o.speed_mps},
-      {positive(o.dt_s), "dt_s must be finite and positive", o.dt_s},
-      {positive(o.min_clearance_m), "min_clearance_m must be finite and positive",
-       o.min_clearance_m},
-      {std::isfinite(o.margin_m) && o.margin_m >= o.min_clearance_m,
-       "margin_m must be finite and at least min_clearance_m", o.margin_m},
-      {o.num_samples > 0, "num_samples must be positive", static_cast<double>(o.num_samples)},
-      {o.num_batches > 0, "num_batches must be positive", static_cast<double>(o.num_batches)},
-      {o.num_streams >= 0 && o.num_streams <= settings_.num_streams,
-       "num_streams must be 0 or at most PlannerSettings::num_streams",
-       static_cast<double>(o.num_streams)},
-      {o.num_segments >= 0 && o.num_segments <= settings_.max_horizon,
-       "num_segments must be 0 or at most max_horizon", static_cast<double>(o.num_segments)},
-      {o.steps_per_window >= 2, "steps_per_window must be at least 2",
-       static_cast<double>(o.steps_per_window)},
-      {o.solver != WindowSolver::kDense || settings_.dense_solver,
-       "solver is kDense without PlannerSettings::dense_solver", 0.0},
-      {o.max_window == 0 || (o.max_window >= 4 && o.max_window <= settings_.max_window),
-       "max_window must be 0 or in [4, PlannerSettings::max_window]",
-       static_cast<double>(o.max_window)},
-      {o.max_iterations >= 0 && o.max_iterations <= kMaxIterations,
-       "max_iterations must be in [0, kMaxIterations]", static_cast<double>(o.max_iterations)},
-      {not_negative(o.improve_s), "improve_s must be finite and not negative", o.improve_s},
-      {not_negative(o.tol_step), "tol_step must be finite and not negative", o.tol_step},
-  };
-  for (const Rule& rule : rules) {
-    if (!rule.holds) {
-      return fail(result, PlanStatus::kBadInput, PlanStage::kRequest, rule.reason, rule.value);
-    }
+  if (!is_ready_) {
+    return fail(result, PlanStatus::kBadInput, PlanStage::kRequest,
+                "the planner has invalid settings or too little memory");
   }
-  return true;
+  const BrokenRule broken = find_broken_rule(request, settings_);
+  if (broken.reason == nullptr) return true;
+  return fail(result, PlanStatus::kBadInput, PlanStage::kRequest, broken.reason, broken.value);
 }
 
 template <class Robot>
@@ -321,31 +283,6 @@ bool Planner<Robot>::check_end(const PlanRequest<Robot>& request, bool is_start,
   const char* const reason =
       is_start ? "start is closer than min_clearance" : "goal is closer than min_clearance";
   return fail(result, status, PlanStage::kRequest, reason, nearest.distance_m, nearest.i_obstacle);
-}
-
-template <class Robot>
-MarginLadder Planner<Robot>::make_ladder(const PlanRequest<Robot>& request,
-                                         double step_length) const SOPT_RT {
-  const PlanOptions& options = request.options;
-  MarginLadder ladder;
-  for (std::size_t i = 0; i < ladder.size(); ++i) {
-    MarginProfile& profile = ladder[i];
-    profile.rule = {options.margin_m, kMarginRungs[i], options.min_clearance_m + kFloorGuard_m};
-    profile.step_length = step_length;
-    const double wanted_m = request.world->max_required_m(profile.rule);
-    const auto relax = [&](const typename Robot::Config& end, double& cap_m, int& num_steps) {
-      const double clearance_m = robot_.clearance(*request.world, end, wanted_m).distance_m;
-      if (clearance_m >= wanted_m) return;
-      cap_m = options.min_clearance_m +
-              MarginProfile::kEndShare * (clearance_m - options.min_clearance_m);
-      // Two steps at least: a path shorter than one step still has two.
-      const double wanted_steps = std::ceil(4.0 * (wanted_m - clearance_m) / step_length);
-      num_steps = static_cast<int>(std::clamp(wanted_steps, 2.0, 1.0 * settings_.max_horizon));
-    };
-    relax(request.start, profile.start_cap_m, profile.num_start_steps);
-    relax(request.goal, profile.goal_cap_m, profile.num_goal_steps);
-  }
-  return ladder;
 }
 
 template <class Robot>

@@ -147,8 +147,6 @@ class Planner {
                                    PlanResult<Robot>& result) const SOPT_RT;
   [[nodiscard]] bool check_end(const PlanRequest<Robot>& request, bool is_start,
                                PlanResult<Robot>& result) const SOPT_RT;
-  [[nodiscard]] MarginLadder make_ladder(const PlanRequest<Robot>& request,
-                                         double step_length) const SOPT_RT;
   // A request under way.
   struct Call {
     const PlanRequest<Robot>& request;

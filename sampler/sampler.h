@@ -36,9 +36,6 @@ struct SamplerCounts {
   std::int64_t rounds = 0;
 };
 
-// One profile per rung of the margin ladder, widest first.
-using MarginLadder = std::array<MarginProfile, kMarginRungs.size()>;
-
 template <class Robot>
 struct SamplerProblem {
   const Robot* robot = nullptr;

@@ -91,34 +91,6 @@ std::string trajectory_to_csv(const PlanResult<Point2>& result) {
   return text;
 }
 
-std::string picture_of(const Scene& scene, const Planner<Point2>& planner,
-                       const PlanResult<Point2>& result, const StageTimes& times) {
-  PlanPicture picture;
-  picture.scene = &scene;
-  picture.title = printable(scene.name) + ": " + to_string(result.status);
-  picture.details = describe_figures(result, times);
-  picture.failure = describe_failure(scene, result);
-  for (int i = 0; i < planner.num_streams(); ++i) {
-    const SamplerStream<Point2>& stream = planner.stream(i);
-    for (int node = 0; node < stream.num_nodes(); ++node) {
-      if (stream.parent(node) < 0) continue;
-      picture.tree_from.push_back(stream.node(stream.parent(node)));
-      picture.tree_to.push_back(stream.node(node));
-    }
-  }
-  if (result.path != nullptr) {
-    picture.path.assign(result.path->vertices.begin(), result.path->vertices.end());
-  }
-  if (result.plan) {
-    const Trajectory<Point2>& trajectory = result.plan->trajectory();
-    picture.waypoints.assign(trajectory.states.begin(), trajectory.states.end());
-    picture.segment_ends = segment_ends(result.splits, trajectory.horizon());
-  } else {
-    picture.i_culprit = result.failure.i_obstacle;
-  }
-  return draw(picture);
-}
-
 int run_plan(const PlanArguments& arguments) {
   const std::vector<std::filesystem::path> outputs = arguments.outputs();
   check_outputs(outputs, {arguments.scene});
@@ -141,7 +113,7 @@ int run_plan(const PlanArguments& arguments) {
     files.push_back({arguments.plan_file, plan_to_text(scene, request, result, times)});
   }
   if (!arguments.svg_file.empty()) {
-    files.push_back({arguments.svg_file, picture_of(scene, planner, result, times)});
+    files.push_back({arguments.svg_file, draw(picture_of(scene, planner, result, times))});
   }
   if (!arguments.csv_file.empty()) {
     files.push_back({arguments.csv_file, trajectory_to_csv(result)});

@@ -9,7 +9,6 @@
 #include <limits>
 #include <optional>
 #include <set>
-#include <thread>
 #include <vector>
 
 #include "opt/planner.h"
@@ -17,6 +16,7 @@
 #include "tests/support/planner_fixture.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/test_problem.h"
+#include "tests/support/threaded_executor.h"
 
 namespace sopt::oracle {
 namespace {
@@ -44,21 +44,6 @@ class TickingExecutor final : public Executor {
 
   Executor* inner_;
   std::atomic<std::int64_t> now_ns_ = 0;
-};
-
-// As many threads as workers; worker w does every third task from w on.
-class ThreadedExecutor final : public Executor {
- public:
-  [[nodiscard]] int num_workers() const noexcept override { return 3; }
-  void run(Task task, int num_tasks) SOPT_RT override {
-    std::vector<std::thread> threads;
-    for (int w = 0; w < num_workers(); ++w) {
-      threads.emplace_back([=, this] {
-        for (int i = w; i < num_tasks; i += num_workers()) task(w, i);
-      });
-    }
-    for (std::thread& thread : threads) thread.join();
-  }
 };
 
 struct TickingPlanner {

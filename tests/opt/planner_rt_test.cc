@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cstring>
 #include <set>
-#include <thread>
 #include <vector>
 
 #include "opt/planner.h"
 #include "tests/support/planner_fixture.h"
 #include "tests/support/rt_guard.h"
+#include "tests/support/threaded_executor.h"
 
 namespace sopt::oracle {
 namespace {
@@ -220,21 +220,6 @@ class BackwardExecutor final : public Executor {
   [[nodiscard]] int num_workers() const noexcept override { return 3; }
   void run(Task task, int num_tasks) SOPT_RT override {
     for (int i = num_tasks - 1; i >= 0; --i) task(i % num_workers(), i);
-  }
-};
-
-// As many threads as workers; worker w does every third task from w on.
-class ThreadedExecutor final : public Executor {
- public:
-  [[nodiscard]] int num_workers() const noexcept override { return 3; }
-  void run(Task task, int num_tasks) SOPT_RT override {
-    std::vector<std::thread> threads;
-    for (int w = 0; w < num_workers(); ++w) {
-      threads.emplace_back([=, this] {
-        for (int i = w; i < num_tasks; i += num_workers()) task(w, i);
-      });
-    }
-    for (std::thread& thread : threads) thread.join();
   }
 };
 

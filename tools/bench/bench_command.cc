@@ -27,9 +27,6 @@ struct BenchArguments {
   bool by_segments = false;
 };
 
-// A given number of segments needs windows of any length, or the shortest would be raised.
-constexpr int kLongestWindow = 320;
-
 int run_by_segments(const std::vector<std::filesystem::path>& scenes,
                     const BenchArguments& arguments) {
   std::vector<SegmentsRun> runs;
@@ -37,6 +34,7 @@ int run_by_segments(const std::vector<std::filesystem::path>& scenes,
   for (const char* const label : {"3", "5", "7", "9", "auto"}) {
     BenchPlanOptions options = arguments.options;
     options.algorithm.segments = label;
+    // Or a small number of segments would be raised.
     if (options.algorithm.segments != "auto" && !options.algorithm.max_window) {
       options.algorithm.max_window = kLongestWindow;
     }

@@ -5,8 +5,9 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
 
-mkdir -p "$tree"/{rt,models,sampler,opt,tools,tests}
+mkdir -p "$tree"/{rt,models,sampler,opt,tests} "$tree"/tools/{io,scenes,bench,attic}
 touch "$tree"/{rt/clock,models/world2,sampler/sampler,opt/splits,opt/planner,tools/scene_file}.h
+touch "$tree"/tools/{io/text,bench/report}.h
 touch "$tree/tests/guard.h"
 cat >"$tree/opt/planner.cc" <<'CC'
 #include "opt/planner.h"
@@ -38,6 +39,9 @@ expect_refused sampler/across.cc '#include "opt/splits.h"'
 expect_refused opt/across.cc '#include "sampler/sampler.h"'
 expect_refused opt/to_planner.cc '#include "opt/planner.h"'
 expect_refused opt/to_tools.cc '#include "tools/scene_file.h"'
+expect_refused tools/io/up.cc '#include "tools/bench/report.h"'
+expect_refused tools/scenes/across.cc '#include "tools/bench/report.h"'
+expect_refused tools/attic/unknown.cc '#include "tools/io/text.h"'
 expect_refused tools/to_tests.cc '#include "tests/guard.h"'
 expect_refused models/angle.h '#include <sampler/sampler.h>'
 expect_refused models/relative.h '#include "../rt/clock.h"'

@@ -85,7 +85,7 @@ void add_optimizer_options(CLI::App& command, AlgorithmOptions& options) {
       ->check(integer_or_word_check(1, kMaxSegments, "auto"));
   command.add_option("--max-window", options.max_window, "Longest window in steps [60]")
       ->type_name("N")
-      ->check(integer_check(4, 320));
+      ->check(integer_check(4, kLongestWindow));
   command.add_flag("--no-merge", options.no_merge, "Keep the segments as they are");
   add_words(command, "--merge-rule", options.merge_rule, merge_rules(),
             "paired: other windows keep their parity; printed: as in the paper [paired]");
@@ -101,7 +101,8 @@ void add_optimizer_options(CLI::App& command, AlgorithmOptions& options) {
             "scale: shorten the steps with the path; rediscretise: fewer steps after every sweep; "
             "off: keep dt [scale]");
   command.add_flag("--paper", options.paper,
-                   "The paper's choices: --sampler rrt_star --no-shortcut --rows label_map --qp "
+                   "The paper's choices, in windows of 30 steps: --sampler rrt_star --no-shortcut "
+                   "--rows label_map --qp "
                    "dense --start zero_input --no-accept --merge-rule printed --resample "
                    "rediscretise; options given beside it win");
 }

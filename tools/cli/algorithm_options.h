@@ -10,6 +10,9 @@
 
 namespace sopt {
 
+// Steps of the longest window that may be asked for: one over the whole horizon of a shipped scene.
+inline constexpr int kLongestWindow = 320;
+
 // What was given on the command line; everything else keeps the scene's value or the default.
 struct AlgorithmOptions {
   std::optional<int> num_samples;

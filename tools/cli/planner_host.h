@@ -15,10 +15,20 @@ class PlannerHost {
  public:
   // Sized for requests on `scene` with `options`. Throws HostError when there is no memory.
   PlannerHost(const Scene& scene, const PlanOptions& options, Clock clock = monotonic_clock())
+      : PlannerHost(scene, options, nullptr, clock) {}
+  // With the caller's executor, which outlives it.
+  PlannerHost(const Scene& scene, const PlanOptions& options, Executor& executor, Clock clock)
+      : PlannerHost(scene, options, &executor, clock) {}
+
+  [[nodiscard]] Planner<Point2>& planner() { return planner_; }
+
+ private:
+  PlannerHost(const Scene& scene, const PlanOptions& options, Executor* executor, Clock clock)
       : settings_(make_settings(scene, options)),
         memory_(Planner<Point2>::required_bytes(settings_)),
         arena_(memory_),
-        planner_(arena_, scene.robot, settings_, executor_, clock) {
+        planner_(arena_, scene.robot, settings_,
+                 executor == nullptr ? static_cast<Executor&>(serial_) : *executor, clock) {
     if (arena_.exhausted()) {
       throw HostError(
           format("the host has no %zu MiB of memory for the planner; smaller --samples "
@@ -27,13 +37,10 @@ class PlannerHost {
     }
   }
 
-  [[nodiscard]] Planner<Point2>& planner() { return planner_; }
-
- private:
   PlannerSettings settings_;
   MemoryBlock memory_;
   Arena arena_;
-  SerialExecutor executor_;
+  SerialExecutor serial_;
   Planner<Point2> planner_;
 };
 

@@ -5,6 +5,8 @@
 
 #include "tools/io/json_fields.h"
 #include "tools/io/picture_style.h"
+#include "tools/io/plan_file.h"
+#include "tools/io/plan_report.h"
 #include "tools/io/scene_picture.h"
 #include "tools/io/svg.h"
 
@@ -186,6 +188,34 @@ std::string draw(const PlanPicture& picture) {
   draw_scale_bar(map, svg);
   draw_legend(picture, layout, svg);
   return svg.finish();
+}
+
+PlanPicture picture_of(const Scene& scene, const Planner<Point2>& planner,
+                       const PlanResult<Point2>& result, const StageTimes& times) {
+  PlanPicture picture;
+  picture.scene = &scene;
+  picture.title = printable(scene.name) + ": " + to_string(result.status);
+  picture.details = describe_figures(result, times);
+  picture.failure = describe_failure(scene, result);
+  for (int i = 0; i < planner.num_streams(); ++i) {
+    const SamplerStream<Point2>& stream = planner.stream(i);
+    for (int node = 0; node < stream.num_nodes(); ++node) {
+      if (stream.parent(node) < 0) continue;
+      picture.tree_from.push_back(stream.node(stream.parent(node)));
+      picture.tree_to.push_back(stream.node(node));
+    }
+  }
+  if (result.path != nullptr) {
+    picture.path.assign(result.path->vertices.begin(), result.path->vertices.end());
+  }
+  if (result.plan) {
+    const Trajectory<Point2>& trajectory = result.plan->trajectory();
+    picture.waypoints.assign(trajectory.states.begin(), trajectory.states.end());
+    picture.segment_ends = segment_ends(result.splits, trajectory.horizon());
+  } else {
+    picture.i_culprit = result.failure.i_obstacle;
+  }
+  return picture;
 }
 
 }  // namespace sopt

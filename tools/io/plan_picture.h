@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "opt/planner.h"
 #include "tools/io/scene_file.h"
 
 namespace sopt {
@@ -30,5 +31,9 @@ struct PlanPicture {
 
 // The whole SVG document.
 [[nodiscard]] std::string draw(const PlanPicture& picture);
+
+// The picture of what a planner did last; `times` stand beside it. Points into `scene`.
+[[nodiscard]] PlanPicture picture_of(const Scene& scene, const Planner<Point2>& planner,
+                                     const PlanResult<Point2>& result, const StageTimes& times);
 
 }  // namespace sopt

@@ -5,18 +5,15 @@
 #include <cstddef>
 #include <span>
 
-#include "tools/io/input_error.h"
-#include "tools/io/plan_report.h"
-
 namespace sopt {
 namespace {
 
 // Room for whatever a table asks for.
-PlannerSettings settings_for_tables(const Scene& scene) {
+PlanOptions most_demanding_options(const Scene& scene) {
   PlanOptions options = make_request(scene).options;
   options.solver = WindowSolver::kDense;
   options.max_window = kLongestWindow;
-  return make_settings(scene, options);
+  return options;
 }
 
 std::int64_t median(std::array<std::int64_t, kNumTimedCalls> times_ns) {
@@ -46,15 +43,7 @@ TableCase to_case(const PlanResult<Point2>& result) {
 TimedPlanner::TimedPlanner(const Scene& scene)
     : scene_(&scene),
       executor_(thread_cpu_clock()),
-      settings_(settings_for_tables(scene)),
-      memory_(Planner<Point2>::required_bytes(settings_)),
-      arena_(memory_),
-      planner_(arena_, scene.robot, settings_, executor_, thread_cpu_clock()) {
-  if (arena_.exhausted()) {
-    throw HostError(format("the host has no %zu MiB of memory for the planner",
-                           Planner<Point2>::required_bytes(settings_) >> 20U));
-  }
-}
+      host_(scene, most_demanding_options(scene), executor_, thread_cpu_clock()) {}
 
 PlanRequest<Point2> TimedPlanner::make_request(const AlgorithmOptions& choices,
                                                std::uint64_t seed) const {
@@ -66,7 +55,7 @@ PlanRequest<Point2> TimedPlanner::make_request(const AlgorithmOptions& choices,
 
 TableCase TimedPlanner::measure(const PlanRequest<Point2>& request) {
   executor_.set_recording(true);
-  PlanResult<Point2> result = planner_.plan(request);
+  PlanResult<Point2> result = planner().plan(request);
   // The sampler's calls come first; the optimiser makes one per sweep.
   const std::span<const TaskCall> calls = executor_.calls();
   const auto num_sweeps = static_cast<std::size_t>(result.iterations);
@@ -77,7 +66,7 @@ TableCase TimedPlanner::measure(const PlanRequest<Point2>& request) {
   std::array<std::int64_t, kNumTimedCalls> sample_ns{}, optimize_ns{}, total_ns{};
   for (std::size_t i = 0; i < kNumTimedCalls; ++i) {
     result = PlanResult<Point2>{};  // gives the slot back
-    result = planner_.plan(request);
+    result = planner().plan(request);
     sample_ns[i] = result.times.sample_ns + result.times.shortcut_ns;
     optimize_ns[i] = result.times.optimize_ns;
     total_ns[i] = result.times.total_ns;

@@ -5,18 +5,15 @@
 
 #include <cstdint>
 
-#include "alloc/arena.h"
-#include "alloc/memory_block.h"
 #include "opt/planner.h"
 #include "tools/cli/algorithm_options.h"
+#include "tools/cli/planner_host.h"
 #include "tools/io/scene_file.h"
 #include "tools/tables/timing_executor.h"
 
 namespace sopt {
 
 inline constexpr int kNumTimedCalls = 3;
-// One window over the whole horizon of a shipped scene (N = 1).
-inline constexpr int kLongestWindow = 320;
 
 struct StageTime {
   double serial_us = 0.0;
@@ -49,15 +46,12 @@ class TimedPlanner {
                                                  std::uint64_t seed) const;
   [[nodiscard]] TableCase measure(const PlanRequest<Point2>& request);
 
-  [[nodiscard]] Planner<Point2>& planner() { return planner_; }
+  [[nodiscard]] Planner<Point2>& planner() { return host_.planner(); }
 
  private:
   const Scene* scene_;
   TimingExecutor executor_;
-  PlannerSettings settings_;
-  MemoryBlock memory_;
-  Arena arena_;
-  Planner<Point2> planner_;
+  PlannerHost host_;
 };
 
 }  // namespace sopt
