@@ -47,21 +47,24 @@ struct WorldCapacity {
 
 // Sizes the planner's memory; fixed for its life.
 struct PlannerSettings {
-  int max_horizon = 4096;        // steps of a trajectory, >= 2
-  int num_streams = 4;           // sampler streams, 1..kMaxStreams
-  int nodes_per_stream = 20000;  // both trees of a stream together, >= 4
-  int max_path_vertices = 1024;  // of a sampled path, >= 4
-  int max_window = 60;           // steps of one optimisation window, 4..kMaxWindow
-  int rows_per_window = 512;     // obstacle rows of one window's QP, at least; >= 0
-  bool dense_solver = false;     // room for WindowSolver::kDense
+  int max_horizon = 4096;            // steps of a trajectory, >= 2
+  int num_streams = 4;               // sampler streams, 1..kMaxStreams
+  int nodes_per_stream = 20000;      // both trees of a stream together, >= 4
+  int max_path_vertices = 1024;      // of a sampled path, >= 4
+  int max_lattice_points = 1 << 17;  // of the search that helps samples out; 0: none
+  int max_window = 60;               // steps of one optimisation window, 4..kMaxWindow
+  int rows_per_window = 512;         // obstacle rows of one window's QP, at least; >= 0
+  bool dense_solver = false;         // room for WindowSolver::kDense
 
   [[nodiscard]] constexpr bool is_valid() const noexcept {
     return max_horizon >= 2 && num_streams >= 1 && num_streams <= kMaxStreams &&
-           nodes_per_stream >= 4 && max_path_vertices >= 4 && max_window >= 4 &&
-           max_window <= kMaxWindow && rows_per_window >= 0;
+           nodes_per_stream >= 4 && max_path_vertices >= 4 && max_lattice_points >= 0 &&
+           max_window >= 4 && max_window <= kMaxWindow && rows_per_window >= 0;
   }
   // The least that is valid.
-  [[nodiscard]] static constexpr PlannerSettings smallest() noexcept { return {2, 1, 4, 4, 4, 0}; }
+  [[nodiscard]] static constexpr PlannerSettings smallest() noexcept {
+    return {2, 1, 4, 4, 0, 4, 0};
+  }
 };
 
 // What one request may ask for; 0 or a negative default says "derive it", as documented.
@@ -77,6 +80,7 @@ struct PlanOptions {
   int num_batches = 4;      // batches before `no_path`
   int num_streams = 0;      // 0: as many as the settings have
   bool shortcut = true;
+  bool lattice = true;  // search a lattice when the first round of samples finds no path
   // --- optimiser
   int num_segments = 0;       // 0: automatic, from the horizon
   int steps_per_window = 50;  // what the automatic number aims at (docs/segments.md)
@@ -96,6 +100,7 @@ struct PlanOptions {
     PlanOptions options;
     options.sampler = SamplerMode::kRrtStar;
     options.shortcut = false;
+    options.lattice = false;
     options.steps_per_window = 30;
     options.merge = MergeRule::kPrinted;
     options.resampling = Resampling::kRediscretize;

@@ -36,6 +36,27 @@ inline constexpr int kLanesFloat = 8;
 [[gnu::always_inline]] inline V4d abs4(V4d v) noexcept { return v < 0.0 ? -v : v; }
 [[gnu::always_inline]] inline V4d min4(V4d a, V4d b) noexcept { return a < b ? a : b; }
 [[gnu::always_inline]] inline V4d max4(V4d a, V4d b) noexcept { return a > b ? a : b; }
+[[gnu::always_inline]] inline double min_lane4(V4d v) noexcept {
+  const double low = v[0] < v[1] ? v[0] : v[1];
+  const double high = v[2] < v[3] ? v[2] : v[3];
+  return low < high ? low : high;
+}
+[[gnu::always_inline]] inline double max_lane4(V4d v) noexcept { return -min_lane4(-v); }
+
+[[gnu::always_inline]] inline V8f abs8(V8f v) noexcept { return v < 0.0F ? -v : v; }
+[[gnu::always_inline]] inline V8f min8(V8f a, V8f b) noexcept { return a < b ? a : b; }
+[[gnu::always_inline]] inline V8f max8(V8f a, V8f b) noexcept { return a > b ? a : b; }
+[[gnu::always_inline]] inline V8f sqrt8(V8f v) noexcept {
+#if defined(__AVX__)
+  __m256 root;
+  std::memcpy(&root, &v, sizeof root);
+  root = _mm256_sqrt_ps(root);
+  std::memcpy(&v, &root, sizeof v);
+#else
+  for (int i = 0; i < kLanesFloat; ++i) v[i] = __builtin_sqrtf(v[i]);
+#endif
+  return v;
+}
 
 // Bit i is set when lane i of a comparison holds; Mask is whatever type the compiler gives to it.
 template <class Mask>

@@ -4,8 +4,6 @@
 // count as walls: leaving them is a penetration.
 #pragma once
 
-#include <cstdint>
-#include <limits>
 #include <span>
 
 #include "alloc/fixed_vector.h"
@@ -14,34 +12,10 @@
 #include "models/config.h"
 #include "models/convex2.h"
 #include "models/margin.h"
+#include "models/world_status.h"
 #include "rt/annotations.h"
 
 namespace sopt {
-
-enum class WorldStatus : std::int8_t {
-  kOk = 0,
-  kNotReset = -1,          // default: nothing was done
-  kNotFinite = -2,         // a coordinate or size is NaN or infinite
-  kBadBounds = -3,         // lower >= upper on an axis
-  kBadSize = -4,           // radius or extent <= 0, or margin < 0
-  kBadVertexCount = -5,    // fewer than 3 or more than kMaxPolygonVertices vertices
-  kNotConvex = -6,         // a vertex turns right, or the outline winds more than once
-  kClockwise = -7,         // convex, but listed clockwise
-  kDegenerate = -8,        // vertices coincide or enclose no area
-  kTooManyObstacles = -9,  // WorldCapacity::max_obstacles
-  kTooManyVertices = -10,  // WorldCapacity::max_vertices
-};
-
-// Stands for the bounds where an obstacle's index is expected.
-inline constexpr int kBoundsObstacle = -1;
-// Stands for "no obstacle near".
-inline constexpr int kNoObstacle = -2;
-
-// The nearest thing to a segment.
-struct NearestObstacle {
-  double distance_m = std::numeric_limits<double>::infinity();
-  int i_obstacle = kNoObstacle;
-};
 
 class World2 {
  public:

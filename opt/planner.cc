@@ -228,6 +228,7 @@ void Planner<Robot>::improve(Slot& slot, Call& call, PlanResult<Robot>& result) 
     result.sampler_counts.rounds += sampled.counts.rounds;
     const double worthwhile = (1.0 - kWorthwhileGain) * known_path_.length();
     if (sampled.path == nullptr || sampled.path->length() > worthwhile) continue;
+    if (until.expired()) break;
     (void)known_path_.vertices.try_assign(sampled.path->vertices.span());
     if (!make_reference(known_path_, call.step_length, request.options.dt_s, candidate_)) continue;
     const OptimizerResult<Robot> optimized = optimize(call, until, candidate_);

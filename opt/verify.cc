@@ -1,9 +1,10 @@
 #include "opt/verify.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+
+#include "opt/motion_boxes.h"
 
 namespace sopt {
 namespace {
@@ -121,39 +122,6 @@ double box_distance(const Aabb2& a, const Aabb2& b) noexcept {
   return std::sqrt(dx * dx + dy * dy);
 }
 
-// Boxes around runs of consecutive motions, so that an obstacle skips what it is far from.
-class MotionBoxes {
- public:
-  explicit MotionBoxes(const Trajectory<Point2>& trajectory) noexcept
-      : horizon_(trajectory.horizon()),
-        run_(std::max(16, (trajectory.horizon() + kMaxRuns - 1) / kMaxRuns)),
-        num_runs_((horizon_ + run_ - 1) / run_) {
-    for (int i = 0; i < num_runs_; ++i) {
-      Aabb2& box = boxes_[static_cast<std::size_t>(i)];
-      box = {trajectory.states[first(i)], trajectory.states[first(i)]};
-      for (int t = first(i) + 1; t <= last(i); ++t) {
-        box.lower = box.lower.cwiseMin(trajectory.states[t]);
-        box.upper = box.upper.cwiseMax(trajectory.states[t]);
-      }
-    }
-  }
-
-  [[nodiscard]] int num_runs() const noexcept { return num_runs_; }
-  [[nodiscard]] int first(int i) const noexcept { return i * run_; }
-  [[nodiscard]] int last(int i) const noexcept { return std::min(horizon_, (i + 1) * run_); }
-  [[nodiscard]] const Aabb2& box(int i) const noexcept {
-    return boxes_[static_cast<std::size_t>(i)];
-  }
-
- private:
-  static constexpr int kMaxRuns = 256;
-
-  int horizon_;
-  int run_;
-  int num_runs_;
-  std::array<Aabb2, kMaxRuns> boxes_;
-};
-
 // Collects the certificate and the earliest violation.
 class Check {
  public:
@@ -231,16 +199,23 @@ class Check {
   void obstacle_clearance(int i_obstacle, const MotionBoxes& boxes) noexcept {
     const ConvexView obstacle = problem_.world->obstacle(i_obstacle);
     const Aabb2 obstacle_box = box_of(obstacle);
-    for (int i = 0; i < boxes.num_runs(); ++i) {
-      if (!is_relevant(boxes.first(i), box_distance(boxes.box(i), obstacle_box))) continue;
-      for (int t = boxes.first(i); t < boxes.last(i); ++t) {
-        const Vec2& p = trajectory_.states[t];
-        const Vec2& q = trajectory_.states[t + 1];
-        if (!is_relevant(t, box_distance({p.cwiseMin(q), p.cwiseMax(q)}, obstacle_box))) continue;
-        const Approach approach = closest_approach(obstacle, p, q);
-        note_clearance(t, approach.share, approach.distance_m - robot_.radius_m, i_obstacle);
-      }
-    }
+    boxes.for_each_run(
+        [&](int first, const Aabb2& box) {
+          return is_relevant(first, box_distance(box, obstacle_box));
+        },
+        [&](int first, int last) {
+          for (int t = first; t < last; ++t)
+            motion_clearance(t, i_obstacle, obstacle, obstacle_box);
+        });
+  }
+
+  void motion_clearance(int t, int i_obstacle, const ConvexView& obstacle,
+                        const Aabb2& obstacle_box) noexcept {
+    const Vec2& p = trajectory_.states[t];
+    const Vec2& q = trajectory_.states[t + 1];
+    if (!is_relevant(t, box_distance({p.cwiseMin(q), p.cwiseMax(q)}, obstacle_box))) return;
+    const Approach approach = closest_approach(obstacle, p, q);
+    note_clearance(t, approach.share, approach.distance_m - robot_.radius_m, i_obstacle);
   }
 
   // Whether something at least `distance_m` away at step t or later can change the outcome.

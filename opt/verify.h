@@ -2,8 +2,8 @@
 // VerifiedPlan. It shares no data and no geometry code with sampler and optimiser: its own distance
 // formulas, every obstacle visited, trajectory boxes instead of the world's broad phase. Checks
 // shape and finiteness, exact start and goal, dynamics, limits, and clearance along the continuous
-// motion (in the plane exact, not sampled). Cost: O(obstacles x horizon / 16) box tests plus exact
-// distances where boxes are near; no heap, bounded.
+// motion (in the plane exact, not sampled). Cost: O(obstacles x log horizon) box tests away from
+// obstacles, plus exact distances where boxes are near; no heap, bounded.
 #pragma once
 
 #include <cstdint>

@@ -42,6 +42,17 @@ class MotionChecker {
            (arrive == 1.0 || robot_->motion_is_clear(*world_, rule_at(b_end), back, b));
   }
 
+  // How far, up to `limit_m`, the robot at `q` can move in any direction and stay clear away from
+  // the ends; not positive when it cannot say.
+  [[nodiscard]] double excess_clearance(const Config& q, double limit_m) SOPT_RT {
+    ++num_checks_;
+    const double required_m = world_->max_required_m(profile_->rule);
+    return robot_->clearance(*world_, q, required_m + limit_m).distance_m - required_m;
+  }
+
+  [[nodiscard]] auto sampling_box() const SOPT_RT {
+    return robot_->sampling_box(*world_, profile_->rule);
+  }
   [[nodiscard]] const MarginProfile& profile() const SOPT_RT { return *profile_; }
   [[nodiscard]] std::int64_t num_checks() const SOPT_RT { return num_checks_; }
 

@@ -21,6 +21,8 @@ template <class Robot>
 Sampler<Robot>::Sampler(Arena& arena, const PlannerSettings& settings, Executor& executor,
                         Clock clock) noexcept
     : max_streams_(std::clamp(settings.num_streams, 1, kMaxStreams)),
+      lattice_(arena, settings.max_lattice_points),
+      lattice_path_(arena, settings.max_path_vertices),
       graph_(arena),
       combined_(arena, settings.max_path_vertices),
       executor_(&executor),
@@ -54,6 +56,16 @@ SamplerResult<Robot> Sampler<Robot>::improve_path(const SamplerProblem<Robot>& p
   SamplerResult<Robot> result;
   Search search{&problem, &deadline, &result, std::int64_t{problem.options->num_batches} + i_round,
                 i_rung,   &known};
+  if (i_round < kLatticeLevels) {
+    graph_.clear();
+    graph_.add(known);
+    if (try_lattice(search, i_round)) {
+      combine_paths(search);
+      result.i_rung = i_rung;
+      result.status = SamplerStatus::kOk;
+      return result;
+    }
+  }
   result.status = run(search);
   return result;
 }
@@ -81,7 +93,10 @@ SamplerStatus Sampler<Robot>::run(Search& search) SOPT_RT {
     ++result.counts.rounds;
     result.sample_ns += clock_.now_ns() - begin_ns;
     const bool is_first = result.path == nullptr;
-    if (!take_new_paths(search)) continue;
+    if (!take_new_paths(search)) {
+      if (used == 0 && try_lattice(search, 0)) break;
+      continue;
+    }
     if (is_first) limit = used + kRoundSamples + kCompany * (used + kRoundSamples);
     if (search.num_agreeing >= 2) break;
   }
@@ -155,6 +170,36 @@ void Sampler<Robot>::shorten_path(const Search& search, int i_stream) SOPT_RT {
                  static_cast<std::uint64_t>(search.i_batch));
   shortcut_path(checker, rng, *search.deadline, path);
   shortcut_checks_[i] = checker.num_checks();
+}
+
+// Takes the way over the lattice if it is shorter than the best path; false when it is not.
+template <class Robot>
+bool Sampler<Robot>::try_lattice(Search& search, int first_level) SOPT_RT {
+  const SamplerProblem<Robot>& problem = *search.problem;
+  SamplerResult<Robot>& result = *search.result;
+  if (!problem.options->lattice) return false;
+  const std::int64_t begin_ns = clock_.now_ns();
+  MotionChecker<Robot> checker(*problem.robot, *problem.world, profile_of(search));
+  bool is_found = lattice_.find_path(checker, problem.start, problem.goal, first_level,
+                                     *search.deadline, lattice_path_);
+  const std::int64_t found_ns = clock_.now_ns();
+  const double raw_length = lattice_path_.length();
+  if (is_found && problem.options->shortcut) {
+    CounterRng rng(problem.seed, static_cast<std::uint64_t>(kMaxStreams) + 1, kShortcutKey,
+                   static_cast<std::uint64_t>(search.i_batch));
+    shortcut_path(checker, rng, *search.deadline, lattice_path_);
+  }
+  result.sample_ns += found_ns - begin_ns;
+  result.shortcut_ns += clock_.now_ns() - found_ns;
+  result.counts.edges += checker.num_checks();
+  is_found = is_found && lattice_path_.length() < search.best_length;
+  if (is_found) {
+    graph_.add(lattice_path_);
+    search.best_length = lattice_path_.length();
+    result.path = &lattice_path_;
+    result.raw_length = raw_length;
+  }
+  return is_found;
 }
 
 // A path that beats the best one by more than the agreement puts the count back: the streams had

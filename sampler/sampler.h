@@ -2,7 +2,8 @@
 // number of samples, on however many workers there are. Paths are shortened when they appear and
 // combined (sampler/path_graph.h); the shortest wins, ties by stream id: the answer depends on the
 // request alone. Without a path the next round follows; a rung of the margin ladder that used its
-// share of samples gives way to the next rung, a batch to the next batch, up to the budget.
+// share of samples gives way to the next rung, a batch to the next batch, up to the budget. Where
+// samples find nothing in the first round a lattice is searched (sampler/lattice_search.h).
 // Deviation: the paper takes the shortest of the first paths as sampled. Here paths are compared by
 // what is left of them after shortening; and streams without a path go on until two paths agree in
 // length or three times the samples of the first path are used (measured: docs/RESULTS.md).
@@ -18,6 +19,7 @@
 #include "rt/clock.h"
 #include "rt/deadline.h"
 #include "rt/executor.h"
+#include "sampler/lattice_search.h"
 #include "sampler/path_graph.h"
 #include "sampler/sampler_stream.h"
 
@@ -66,9 +68,10 @@ class Sampler {
   [[nodiscard]] SamplerResult<Robot> find_path(const SamplerProblem<Robot>& problem,
                                                const Deadline& deadline) SOPT_RT;
 
-  // Looks for a way shorter than `known`, a path that is clear under rung i_rung: one more batch of
+  // Looks for a way shorter than `known`, a path that is clear under rung i_rung, and combines it
+  // with `known`: over lattice level i_round if that finds one, otherwise by one more batch of
   // streams with random numbers of round i_round >= 0, of samples through which a path can be
-  // shorter, combined with `known`. The answer may be `known` itself, shortened anew, and kNoPath
+  // shorter. The answer may be `known` itself, shortened anew, and kNoPath
   // when no stream finds a path. `known` must not be a path of this sampler.
   [[nodiscard]] SamplerResult<Robot> improve_path(const SamplerProblem<Robot>& problem, int i_rung,
                                                   int i_round, const Path<Robot>& known,
@@ -109,6 +112,7 @@ class Sampler {
   [[nodiscard]] bool take_new_paths(Search& search) SOPT_RT;
   void shorten_path(const Search& search, int i_stream) SOPT_RT;
   void combine_paths(Search& search) SOPT_RT;
+  [[nodiscard]] bool try_lattice(Search& search, int first_level) SOPT_RT;
   [[nodiscard]] SamplerStatus conclude(const Search& search) SOPT_RT;
 
   int max_streams_ = 0;
@@ -116,6 +120,8 @@ class Sampler {
   std::array<SamplerStream<Robot>, kMaxStreams> streams_;
   std::array<double, kMaxStreams> raw_length_{};
   std::array<std::int64_t, kMaxStreams> shortcut_checks_{};
+  LatticeSearch<Robot> lattice_;
+  Path<Robot> lattice_path_;
   PathGraph<Robot> graph_;
   Path<Robot> combined_;
   Executor* executor_;

@@ -60,13 +60,15 @@ void drop_vertices(MotionChecker<Robot>& checker, const Deadline& deadline,
   auto& v = path.vertices;
   const int size = v.size();
   int num_kept = 1;
+  bool is_late = false;
   for (int at = 0; at + 1 < size;) {
     int next = std::min(at + kMaxSkip, size - 1);
-    while (next > at + 1 &&
-           (deadline.expired() ||
-            !checker.is_clear(v[num_kept - 1], end_of(at, size), v[next], end_of(next, size)))) {
+    while (next > at + 1 && !is_late &&
+           !checker.is_clear(v[num_kept - 1], end_of(at, size), v[next], end_of(next, size))) {
       --next;
+      is_late = deadline.expired();
     }
+    if (is_late) next = at + 1;
     v[num_kept++] = v[next];
     at = next;
   }

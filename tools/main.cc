@@ -11,6 +11,7 @@
 #include "tools/io/json_fields.h"
 #include "tools/plan_command.h"
 #include "tools/qp_command.h"
+#include "tools/robot_command.h"
 #include "tools/tables_command.h"
 #include "tools/verify_command.h"
 
@@ -34,6 +35,7 @@ int run(int argc, char** argv) {
   sopt::add_bench_command(app, exit_code);
   sopt::add_qp_command(app, exit_code);
   sopt::add_tables_command(app, exit_code);
+  sopt::add_robot_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

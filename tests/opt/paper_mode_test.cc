@@ -28,6 +28,7 @@ TEST(PaperOptions, AreThePapersChoices) {
   constexpr PlanOptions kPaper = PlanOptions::paper();
   EXPECT_EQ(kPaper.sampler, SamplerMode::kRrtStar);
   EXPECT_FALSE(kPaper.shortcut);
+  EXPECT_FALSE(kPaper.lattice);
   EXPECT_EQ(kPaper.steps_per_window, 30);
   EXPECT_EQ(kPaper.merge, MergeRule::kPrinted);
   EXPECT_EQ(kPaper.resampling, Resampling::kRediscretize);
@@ -238,7 +239,7 @@ TEST_F(PaperPlanner, AnswersWithVerifiedPlans) {
 
 TEST_F(PaperPlanner, MakesEachChoiceAlone) {
   const PlanOptions paper = PlanOptions::paper();
-  std::vector<PlanOptions> each(8);
+  std::vector<PlanOptions> each(9);
   each[0].sampler = paper.sampler;
   each[1].shortcut = paper.shortcut;
   each[2].merge = paper.merge;
@@ -247,6 +248,7 @@ TEST_F(PaperPlanner, MakesEachChoiceAlone) {
   each[5].solver = paper.solver;
   each[6].accept = paper.accept;
   each[7].zero_input_start = paper.zero_input_start;
+  each[8].lattice = paper.lattice;
   for (std::size_t i = 0; i < each.size(); ++i) {
     for (request_.seed = 1; request_.seed <= 5; ++request_.seed) {
       SCOPED_TRACE(std::to_string(i) + " " + std::to_string(request_.seed));

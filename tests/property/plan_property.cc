@@ -74,6 +74,7 @@ void draw_paper_choices(Random& random, PlanOptions& options) {
   };
   take(&PlanOptions::sampler);
   take(&PlanOptions::shortcut);
+  take(&PlanOptions::lattice);
   take(&PlanOptions::steps_per_window);
   take(&PlanOptions::merge);
   take(&PlanOptions::resampling);
@@ -97,6 +98,7 @@ Case draw_case(Random& random) {
   options.num_batches = 1;
   options.merge = random.chance(0.8) ? MergeRule::kPaired : MergeRule::kOff;
   options.shortcut = random.chance(0.8);
+  options.lattice = random.chance(0.8);
   options.resampling = random.chance(0.8) ? Resampling::kScale : Resampling::kOff;
   if (random.chance(0.2)) options.tol_step = 0.0;
   if (random.chance(0.2)) options.max_window = 4 + random.index(57);
@@ -118,15 +120,16 @@ Case draw_case(Random& random) {
 std::string to_text(const Case& c) {
   const PlanOptions& o = c.request.options;
   char rest[500];
-  std::snprintf(rest, sizeof rest,
-                ",\"radius\":%.17g,\"seed\":%d,\"margin\":%.17g,\"sampler\":%d,\"merge\":%d,"
-                "\"shortcut\":%d,\"resampling\":%d,\"tol_step\":%.17g,\"max_window\":%d,"
-                "\"rows\":%d,\"solver\":%d,\"accept\":%d,\"zero_input_start\":%d,"
-                "\"steps_per_window\":%d}",
-                c.radius_m(), static_cast<int>(c.request.seed), o.margin_m,
-                static_cast<int>(o.sampler), static_cast<int>(o.merge), o.shortcut,
-                static_cast<int>(o.resampling), o.tol_step, o.max_window, static_cast<int>(o.rows),
-                static_cast<int>(o.solver), o.accept, o.zero_input_start, o.steps_per_window);
+  std::snprintf(
+      rest, sizeof rest,
+      ",\"radius\":%.17g,\"seed\":%d,\"margin\":%.17g,\"sampler\":%d,\"merge\":%d,"
+      "\"shortcut\":%d,\"lattice\":%d,\"resampling\":%d,\"tol_step\":%.17g,\"max_window\":%d,"
+      "\"rows\":%d,\"solver\":%d,\"accept\":%d,\"zero_input_start\":%d,"
+      "\"steps_per_window\":%d}",
+      c.radius_m(), static_cast<int>(c.request.seed), o.margin_m, static_cast<int>(o.sampler),
+      static_cast<int>(o.merge), o.shortcut, o.lattice, static_cast<int>(o.resampling), o.tol_step,
+      o.max_window, static_cast<int>(o.rows), static_cast<int>(o.solver), o.accept,
+      o.zero_input_start, o.steps_per_window);
   return "{" + sopt::oracle::to_text(c.scene) +
          ",\"start\":" + sopt::oracle::to_text(c.request.start) +
          ",\"goal\":" + sopt::oracle::to_text(c.request.goal) + rest;

@@ -52,8 +52,13 @@ class SamplerTest : public ::testing::TestWithParam<SamplerMode> {
     scene_ = scene;
     ASSERT_EQ(oracle::fill(scene, test_.world), WorldStatus::kOk);
   }
-  // Ends exact, every motion clear at the rung that is reported.
+  // Ends exact, every motion clear at the rung that is reported; found by sampling.
   void check(const SamplerResult<Point2>& result) const {
+    check_path(result);
+    EXPECT_GT(result.counts.nodes, 0);
+    EXPECT_GT(result.counts.rounds, 0);
+  }
+  void check_path(const SamplerResult<Point2>& result) const {
     ASSERT_EQ(result.status, SamplerStatus::kOk);
     ASSERT_NE(result.path, nullptr);
     const auto vertices = result.path->vertices.span();
@@ -64,9 +69,7 @@ class SamplerTest : public ::testing::TestWithParam<SamplerMode> {
     EXPECT_GE(SceneOracle(scene_).path_slack(vertices, robot_.radius_m, profile), -kTol_m)
         << oracle::to_text(scene_) << oracle::to_text(vertices);
     EXPECT_LE(result.path->length(), result.raw_length * (1.0 + 1e-12));
-    EXPECT_GT(result.counts.nodes, 0);
     EXPECT_GT(result.counts.edges, 0);
-    EXPECT_GT(result.counts.rounds, 0);
   }
 
   Point2 robot_{0.1};
@@ -241,14 +244,57 @@ TEST_P(SamplerTest, TouchesNoHeap) {
   EXPECT_EQ(guard.num_allocations() + guard.num_releases() + guard.num_locks(), 0);
 }
 
+// --- the lattice
+
+// A door of 3 cm beyond what the body and its margin take: one round of samples finds it rarely.
+TEST_P(SamplerTest, SearchesALatticeAfterARoundInVain) {
+  use(oracle::room_with_gap(0.33));
+  options_.num_samples = 4 * 128;  // one round for each rung
+  InArena<Sampler<Point2>> sampler(small_settings(), serial_, clock_.clock());
+  int num_sampled = 0;
+  for (problem_.seed = 1; problem_.seed <= 20; ++problem_.seed) {
+    options_.lattice = false;
+    const auto sampled = sampler->find_path(problem_, Deadline());
+    if (sampled.path != nullptr && sampled.i_rung == 0) ++num_sampled;
+    options_.lattice = true;
+    const auto searched = sampler->find_path(problem_, Deadline());
+    check(searched);
+    EXPECT_EQ(searched.i_rung, 0) << problem_.seed;
+  }
+  EXPECT_LT(num_sampled, 10);
+}
+
+TEST_P(SamplerTest, FindsTheSameByTheLatticeForEveryExecutor) {
+  use(oracle::room_with_gap(0.33));
+  oracle::ReverseExecutor reverse;
+  InArena<Sampler<Point2>> first(small_settings(), serial_, clock_.clock());
+  InArena<Sampler<Point2>> other(small_settings(), reverse, clock_.clock());
+  for (problem_.seed = 1; problem_.seed <= 5; ++problem_.seed) {
+    const auto a = first->find_path(problem_, Deadline());
+    check(a);
+    const auto b = other->find_path(problem_, Deadline());
+    EXPECT_TRUE(oracle::same_bytes(a.path->vertices.span(), b.path->vertices.span()));
+    EXPECT_EQ(a.counts.edges, b.counts.edges);
+  }
+}
+
+TEST_P(SamplerTest, GoesWithoutALatticeThatHasNoRoom) {
+  use(oracle::room_with_gap(0.6));
+  PlannerSettings settings = small_settings();
+  settings.max_lattice_points = 0;
+  InArena<Sampler<Point2>> sampler(settings, serial_, clock_.clock());
+  check(sampler->find_path(problem_, Deadline()));
+}
+
 // --- improve_path
 
-// Through the gap of room_with_gap, by a detour.
+// Through the gap of room_with_gap, by a detour; by samples alone.
 class SamplerImproveTest : public SamplerTest {
  protected:
   void SetUp() override {
     SamplerTest::SetUp();
     use(oracle::room_with_gap(0.6));
+    options_.lattice = false;
   }
   SamplerResult<Point2> improve(Sampler<Point2>& sampler, const std::vector<Vec2>& known,
                                 int i_round = 0) {
@@ -293,6 +339,16 @@ TEST_P(SamplerImproveTest, IsNeverLongerThanTheKnownPath) {
   const double bound_m =
       (Vec2(5.0, edge_m) - problem_.start).norm() + (problem_.goal - Vec2(5.0, edge_m)).norm();
   EXPECT_LT(length_m, 1.02 * bound_m);
+}
+
+TEST_P(SamplerImproveTest, SearchesEveryLevelOfTheLatticeFirst) {
+  options_.lattice = true;
+  for (int i_round = 0; i_round < kLatticeLevels + 2; ++i_round) {
+    const auto result = improve(*sampler_, detour(), i_round);
+    check_path(result);
+    EXPECT_EQ(result.counts.rounds == 0, i_round < kLatticeLevels) << i_round;
+    EXPECT_LT(result.path->length(), 0.9 * oracle::length_of(detour()));
+  }
 }
 
 TEST_P(SamplerImproveTest, FindsNothingShorterThanAStraightPath) {

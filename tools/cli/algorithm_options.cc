@@ -77,6 +77,8 @@ void add_sampler_options(CLI::App& command, AlgorithmOptions& options) {
   add_words(command, "--sampler", options.sampler, samplers(),
             "rrt_star or rrt_star_connect [the latter]");
   command.add_flag("--no-shortcut", options.no_shortcut, "Optimise the sampled path as it is");
+  command.add_flag("--no-lattice", options.no_lattice,
+                   "Only sample, where otherwise a lattice is searched after a round in vain");
 }
 
 void add_optimizer_options(CLI::App& command, AlgorithmOptions& options) {
@@ -102,8 +104,8 @@ void add_optimizer_options(CLI::App& command, AlgorithmOptions& options) {
             "off: keep dt [scale]");
   command.add_flag("--paper", options.paper,
                    "The paper's choices, in windows of 30 steps: --sampler rrt_star --no-shortcut "
-                   "--rows label_map --qp "
-                   "dense --start zero_input --no-accept --merge-rule printed --resample "
+                   "--no-lattice --rows label_map --qp dense --start zero_input --no-accept "
+                   "--merge-rule printed --resample "
                    "rediscretise; options given beside it win");
 }
 
@@ -165,6 +167,7 @@ void apply(const AlgorithmOptions& options, PlanOptions& plan) {
   put(options.start, starts(), plan.zero_input_start);
   if (options.no_merge) plan.merge = MergeRule::kOff;
   if (options.no_shortcut) plan.shortcut = false;
+  if (options.no_lattice) plan.lattice = false;
   if (options.no_accept) plan.accept = false;
   if (options.improve_ms) plan.improve_s = *options.improve_ms / 1000.0;
   plan.margin_m = options.margin_m.value_or(plan.margin_m);
@@ -179,6 +182,7 @@ nlohmann::ordered_json to_json(const AlgorithmOptions& options) {
           {"streams", to_json(options.num_streams)},
           {"sampler", word_of(samplers(), plan.sampler)},
           {"shortcut", plan.shortcut},
+          {"lattice", plan.lattice},
           {"segments", options.segments},
           {"max_window", to_json(options.max_window)},
           {"rows", word_of(row_modes(), plan.rows)},

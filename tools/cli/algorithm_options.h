@@ -22,6 +22,7 @@ struct AlgorithmOptions {
   bool paper = false;
   bool no_merge = false;
   bool no_shortcut = false;
+  bool no_lattice = false;
   bool no_accept = false;
   std::optional<std::string> sampler, rows, resample, merge_rule, qp, start;
   std::optional<double> improve_ms;

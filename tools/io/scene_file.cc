@@ -51,6 +51,7 @@ PlanOptions make_options(const Scene& scene) {
                     "among at most " + std::to_string(WorldCapacity{}.max_vertices) +
                         " vertices, every obstacle's rounded up to a multiple of 4");
     case WorldStatus::kBadSize:
+    case WorldStatus::kBadRotation:
     case WorldStatus::kNotFinite:
     case WorldStatus::kBadBounds:
     case WorldStatus::kNotReset:

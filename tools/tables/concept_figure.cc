@@ -61,6 +61,7 @@ LineChart concept_chart(const Scene& scene, double budget_s) {
   AlgorithmOptions sampled;
   sampled.sampler = "rrt_star";
   sampled.no_shortcut = true;
+  sampled.no_lattice = true;
   LineChart chart;
   chart.title = printable(scene.name) + format(", %d obstacles", scene.world->num_obstacles());
   chart.x_label = "thread CPU time [ms]";

@@ -35,6 +35,7 @@ std::vector<TableRun> list_switches() {
   add("defaults", [](Choices&) {});
   add("--sampler rrt_star", [](Choices& c) { c.sampler = "rrt_star"; });
   add("--no-shortcut", [](Choices& c) { c.no_shortcut = true; });
+  add("--no-lattice", [](Choices& c) { c.no_lattice = true; });
   add("--rows waypoint", [](Choices& c) { c.rows = "waypoint"; });
   add("--rows label_map", [](Choices& c) { c.rows = "label_map"; });
   add("--qp dense", [](Choices& c) { c.qp = "dense"; });
@@ -70,6 +71,7 @@ PlaneTables list_plane_tables() {
   tables.rrt_star.label = kPaperRrtStar.label;
   tables.rrt_star.choices.sampler = "rrt_star";
   tables.rrt_star.choices.no_shortcut = true;
+  tables.rrt_star.choices.no_lattice = true;
   tables.rrt_star.optimizes = false;
   AlgorithmOptions paper;
   paper.paper = true;

@@ -21,6 +21,7 @@ AlgorithmOptions from_sampled_path(const char* num_segments, bool merges) {
   AlgorithmOptions choices;
   choices.sampler = "rrt_star";
   choices.no_shortcut = true;
+  choices.no_lattice = true;
   choices.segments = num_segments;
   choices.no_merge = !merges;
   choices.max_window = kLongestWindow;

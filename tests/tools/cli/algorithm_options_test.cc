@@ -42,6 +42,7 @@ void expect_same(const PlanOptions& a, const PlanOptions& b) {
   EXPECT_EQ(a.num_batches, b.num_batches);
   EXPECT_EQ(a.num_streams, b.num_streams);
   EXPECT_EQ(a.shortcut, b.shortcut);
+  EXPECT_EQ(a.lattice, b.lattice);
   EXPECT_EQ(a.num_segments, b.num_segments);
   EXPECT_EQ(a.steps_per_window, b.steps_per_window);
   EXPECT_EQ(a.max_window, b.max_window);
@@ -77,6 +78,9 @@ TEST(AlgorithmOptions, MakeOneChoiceEach) {
   expected = {};
   expected.shortcut = paper.shortcut;
   expect_same(plan_of({"--no-shortcut"}), expected);
+  expected = {};
+  expected.lattice = paper.lattice;
+  expect_same(plan_of({"--no-lattice"}), expected);
   expected = {};
   expected.rows = paper.rows;
   expect_same(plan_of({"--rows", "label_map"}), expected);
@@ -122,6 +126,7 @@ TEST(AlgorithmOptions, WinOverThePaperInAnyOrder) {
       "--start",   "reference",        "--resample", "scale", "--merge-rule", "paired"};
   PlanOptions expected;
   expected.shortcut = false;
+  expected.lattice = false;
   expected.accept = false;
   expected.steps_per_window = 30;
   std::vector<std::string> arguments = against;
@@ -170,6 +175,7 @@ TEST(AlgorithmOptions, ReportWhatTheyChoose) {
   const auto defaults = json_of({});
   EXPECT_EQ(defaults["sampler"], "rrt_star_connect");
   EXPECT_EQ(defaults["shortcut"], true);
+  EXPECT_EQ(defaults["lattice"], true);
   EXPECT_EQ(defaults["rows"], "edge");
   EXPECT_EQ(defaults["qp"], "kernel");
   EXPECT_EQ(defaults["start"], "reference");
@@ -184,6 +190,7 @@ TEST(AlgorithmOptions, ReportWhatTheyChoose) {
   const auto paper = json_of({"--paper"});
   EXPECT_EQ(paper["sampler"], "rrt_star");
   EXPECT_EQ(paper["shortcut"], false);
+  EXPECT_EQ(paper["lattice"], false);
   EXPECT_EQ(paper["rows"], "label_map");
   EXPECT_EQ(paper["qp"], "dense");
   EXPECT_EQ(paper["start"], "zero_input");
@@ -206,6 +213,7 @@ TEST(AlgorithmOptions, CanBeGivenAgainFromTheReport) {
     }
     again.insert(again.end(), {"--merge-rule", report["merge"].get<std::string>()});
     if (!report["shortcut"].get<bool>()) again.emplace_back("--no-shortcut");
+    if (!report["lattice"].get<bool>()) again.emplace_back("--no-lattice");
     if (!report["accept"].get<bool>()) again.emplace_back("--no-accept");
     EXPECT_EQ(json_of(again), report);
     // But for how long windows should be, which has no option of its own.

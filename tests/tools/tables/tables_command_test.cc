@@ -65,7 +65,7 @@ TEST_F(TablesCommandTest, PrintsTheTablesAndWritesFiguresAndPictures) {
   EXPECT_EQ(column["optimise"]["serial_us"]["count"], 1);
   EXPECT_EQ(document["paper"]["columns"][0]["time_s"], 80.32);
   EXPECT_EQ(document["claims"].size(), 9U);
-  EXPECT_EQ(document["switches"].size(), 11U);
+  EXPECT_EQ(document["switches"].size(), 12U);
 
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(pictures)) {

@@ -1,0 +1,271 @@
+// Robot arm of N joints in a chain: forward kinematics, Jacobians, limits, the path metric and what
+// is needed to check its links. State z = (theta, omega), input u = alpha, configuration = theta.
+// Links are groups of capsules (a sphere is a capsule whose ends coincide). Joint i, counted from
+// 0, moves link i + 1; link 0 is the base. Units m, rad, s; "unit" below is rad for a joint that
+// turns and m for one that slides. Method: at setup every link frame is turned into a joint frame J
+// whose z is the joint's axis and whose x is perpendicular to the next axis too, as Denavit and
+// Hartenberg do, but without moving its origin. Then X_J(i) = X_J(i-1) * (R_x(twist) R_z(offset +
+// q), position): no general rotation is left in the loop.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "models/shape3.h"
+#include "rt/annotations.h"
+
+namespace sopt {
+
+class World3;
+
+inline constexpr int kMinArmJoints = 4;
+inline constexpr int kMaxArmJoints = 8;
+inline constexpr int kMaxLinkCapsules = 128;  // of all links together, attached ones included
+inline constexpr int kMaxBodies = 32;         // of all links together
+inline constexpr int kMaxBodyPairs = 64;
+// Stands for "no joint" where the index of one is expected.
+inline constexpr int kNoJoint = -1;
+
+enum class JointKind : std::int8_t { kRevolute, kContinuous, kPrismatic };
+
+struct ArmJoint {
+  Pose3 origin;               // joint frame in the frame of the link before it, at q = 0
+  Vec3 axis = Vec3::UnitZ();  // unit, in the joint frame
+  JointKind kind = JointKind::kRevolute;
+  double lower = 0.0;  // unit; -inf for continuous
+  double upper = 0.0;  // unit; +inf for continuous
+  double v_max = 0.0;  // unit/s, > 0
+  double a_max = 0.0;  // unit/s^2, > 0
+};
+
+// Part of a link. Capsules of one link that have different partners in self-collision belong to
+// different bodies; usually a link is one body.
+struct LinkCapsule {
+  int i_link = 0;
+  Vec3 p0 = Vec3::Zero();  // link frame
+  Vec3 p1 = Vec3::Zero();
+  double radius_m = 0.0;  // >= 0
+  int i_body = 0;         // within the link, 0..kMaxBodies - 1
+};
+
+// Two bodies that may collide; of different links.
+struct BodyPair {
+  int i_link_a = 0;
+  int i_link_b = 0;
+  int i_body_a = 0;
+  int i_body_b = 0;
+};
+
+template <int N>
+struct ArmDescription {
+  Pose3 X_WB;  // base in the world
+  std::array<ArmJoint, N> joints;
+  std::span<const LinkCapsule> capsules;  // any order
+  std::span<const BodyPair> pairs;        // a body without capsules touches nothing
+};
+
+enum class ArmStatus : std::int8_t {
+  kOk = 0,
+  kNotReset = -1,         // default: nothing was done
+  kNotFinite = -2,        // NaN or infinite, but for the limits of a continuous joint
+  kBadRotation = -3,      // a pose's rotation is not orthonormal and right-handed within 1e-9
+  kBadAxis = -4,          // not of length 1 within 1e-9
+  kBadLimits = -5,        // lower > upper, or a continuous joint with limits
+  kBadRate = -6,          // v_max or a_max <= 0
+  kBadRadius = -7,        // < 0
+  kBadLink = -8,          // no such link or body, or a pair within one link
+  kTooManyCapsules = -9,  // kMaxLinkCapsules
+  kTooManyBodies = -10,   // kMaxBodies
+  kTooManyPairs = -11,    // kMaxBodyPairs
+};
+
+// Frames in the world at one configuration: [0] base, [i] joint frame of link i (see the head of
+// this file); the z column is the axis of joint i - 1, the position is the link's origin.
+template <int N>
+struct ArmPose {
+  std::array<Pose3, N + 1> X_WJ;
+};
+
+// A group of capsules on one link, [first, last) of the arm's capsules.
+struct ArmBody {
+  int i_link = 0;
+  int first = 0;
+  int last = 0;
+  Sphere3 sphere;  // joint frame; contains the capsules
+};
+
+template <int N>
+class Arm {
+ public:
+  static_assert(N >= kMinArmJoints && N <= kMaxArmJoints);
+  static constexpr int kDof = N;
+  static constexpr int kNumLinks = N + 1;
+  using Config = Eigen::Matrix<double, N, 1>;
+  using State = Eigen::Matrix<double, 2 * N, 1>;  // (theta, omega)
+  using Input = Config;                           // alpha
+  using World = World3;
+  using Pose = ArmPose<N>;
+
+  // Replaces the whole arm; on a status other than kOk it is unchanged.
+  [[nodiscard]] ArmStatus reset(const ArmDescription<N>& description) noexcept;
+
+  // Adds capsules, as of a grasped object, to links until `detach`; they collide with what the
+  // bodies they name collide with. Between requests: capsule and body indices change. On a status
+  // other than kOk nothing was added.
+  [[nodiscard]] ArmStatus try_attach(std::span<const LinkCapsule> object) noexcept;
+  void detach() noexcept;
+
+  // --- kinematics
+  void forward(const Config& q, Pose& pose) const SOPT_RT;
+  // Frame of link i_link as the description has it.
+  [[nodiscard]] Pose3 link_pose(const Pose& pose, int i_link) const SOPT_RT;
+  [[nodiscard]] Capsule3 capsule_W(const Pose& pose, int i_capsule) const SOPT_RT {
+    const Capsule3& c = capsules_[at(i_capsule)];
+    const Pose3& X = pose.X_WJ[at(link_of_[at(i_capsule)])];
+    return {X.rotation * c.p0 + X.position, X.rotation * c.p1 + X.position, c.radius_m};
+  }
+  // Contains the link's capsules; meaningless for a link without.
+  [[nodiscard]] Sphere3 link_sphere_W(const Pose& pose, int i_link) const SOPT_RT {
+    return to_world(pose, i_link, spheres_[at(i_link)]);
+  }
+  [[nodiscard]] Sphere3 body_sphere_W(const Pose& pose, int i_body) const SOPT_RT {
+    return to_world(pose, bodies_[at(i_body)].i_link, bodies_[at(i_body)].sphere);
+  }
+  // d(normal . p)/dq with p fixed in link i_link; p and normal in the world.
+  [[nodiscard]] Config distance_gradient(const Pose& pose, int i_link, const Vec3& p_W,
+                                         const Vec3& normal_W) const SOPT_RT;
+
+  // --- bounds on motion, over all configurations within the limits
+  // What moves here are the capsules' cores and the centres of the bounding spheres: the clearance
+  // of a capsule or sphere changes by no more than its core moves, whatever its radius.
+  // Largest distance of link i_link's cores from the axis of joint i_joint; 1 when the joint
+  // slides, 0 when it does not move the link. m/unit.
+  [[nodiscard]] double max_reach(int i_joint, int i_link) const SOPT_RT {
+    return reach_[at(i_link)][i_joint];
+  }
+  // Bound on how far link i_link's cores move against link i_base while joint j moves by at most
+  // abs_dq[j] >= 0. i_base <= i_link; links between pairs move less against each other than against
+  // the world. m.
+  [[nodiscard]] double displacement_bound(int i_link, const Config& abs_dq,
+                                          int i_base = 0) const SOPT_RT {
+    double bound_m = 0.0;
+    for (int j = i_base; j < i_link; ++j) bound_m += reach_[at(i_link)][j] * abs_dq[j];
+    return bound_m * (1.0 + 1e-14);
+  }
+
+  // --- metric and dynamics
+  // b - a, the short way round for continuous joints: their share is in (-pi, pi].
+  [[nodiscard]] Config difference(const Config& a, const Config& b) const SOPT_RT;
+  // 2-norm of the difference: rad, sliding joints in m.
+  [[nodiscard]] double path_distance(const Config& a, const Config& b) const SOPT_RT {
+    return difference(a, b).norm();
+  }
+  // The configuration at share s in [0, 1] of the motion from a to b. Continuous joints end at b's
+  // angle up to whole turns, so that the motion has no jump.
+  [[nodiscard]] Config interpolate(const Config& a, const Config& b, double s) const SOPT_RT {
+    return a + s * difference(a, b);
+  }
+  // Exact for an acceleration constant over dt_s.
+  [[nodiscard]] static State step(const State& state, const Input& input, double dt_s) SOPT_RT {
+    State next;
+    next.template head<N>() =
+        state.template head<N>() + dt_s * state.template tail<N>() + 0.5 * dt_s * dt_s * input;
+    next.template tail<N>() = state.template tail<N>() + dt_s * input;
+    return next;
+  }
+  // The first joint outside its position limits (NaN is outside), or kNoJoint.
+  [[nodiscard]] int joint_outside_limits(const Config& q) const SOPT_RT;
+  [[nodiscard]] bool within_limits(const Config& q) const SOPT_RT {
+    return joint_outside_limits(q) == kNoJoint;
+  }
+
+  // --- what the arm consists of
+  [[nodiscard]] const ArmJoint& joint(int i_joint) const SOPT_RT { return joints_[at(i_joint)]; }
+  [[nodiscard]] const Config& lower() const SOPT_RT { return lower_; }
+  [[nodiscard]] const Config& upper() const SOPT_RT { return upper_; }
+  [[nodiscard]] const Config& v_max() const SOPT_RT { return v_max_; }
+  [[nodiscard]] const Config& a_max() const SOPT_RT { return a_max_; }
+  [[nodiscard]] int num_capsules() const SOPT_RT { return num_capsules_; }
+  // Capsules of link i_link are [first_capsule(i_link), first_capsule(i_link + 1)).
+  [[nodiscard]] int first_capsule(int i_link) const SOPT_RT { return first_[at(i_link)]; }
+  [[nodiscard]] int capsule_link(int i_capsule) const SOPT_RT { return link_of_[at(i_capsule)]; }
+  [[nodiscard]] const Capsule3& capsule_J(int i_capsule) const SOPT_RT {  // joint frame
+    return capsules_[at(i_capsule)];
+  }
+  [[nodiscard]] const Sphere3& link_sphere_J(int i_link) const SOPT_RT {
+    return spheres_[at(i_link)];
+  }
+  [[nodiscard]] int num_bodies() const SOPT_RT { return num_bodies_; }
+  [[nodiscard]] const ArmBody& body(int i_body) const SOPT_RT { return bodies_[at(i_body)]; }
+  // Pairs of bodies, by index into `body`, the lower link first.
+  struct IndexPair {
+    int i_body_a = 0;
+    int i_body_b = 0;
+  };
+  [[nodiscard]] std::span<const IndexPair> self_collision_pairs() const SOPT_RT {
+    return {pairs_.data(), at(num_pairs_)};
+  }
+
+  // The constants of `forward`, for code that moves several configurations at a time.
+  struct Kinematics {
+    Pose3 X_WB;
+    Pose3 X_WJ1;                     // of the first joint frame at angle and slide 0
+    std::array<Vec3, N> position{};  // of J(i+1) in J(i) at slide 0; [0] unused
+    Config cos_twist, sin_twist;     // [0] unused
+    Config offset;                   // angle = offset + turns * q
+    Config turns;                    // 1 for a joint that turns, else 0
+    Config slides;                   // 1 - turns; slide = slides * q
+    bool has_prismatic = false;
+  };
+  [[nodiscard]] const Kinematics& kinematics() const SOPT_RT { return kinematics_; }
+
+ private:
+  [[nodiscard]] static constexpr std::size_t at(int i) noexcept {
+    return static_cast<std::size_t>(i);
+  }
+  [[nodiscard]] static Sphere3 to_world(const Pose& pose, int i_link, const Sphere3& s) SOPT_RT {
+    const Pose3& X = pose.X_WJ[at(i_link)];
+    return {X.rotation * s.center + X.position, s.radius_m};
+  }
+  void fold_frames(const Pose3& X_WB) noexcept;
+  [[nodiscard]] ArmStatus rebuild() noexcept;  // all below from sources_ and source_pairs_
+  void sort_capsules() noexcept;
+  void resolve_pairs() noexcept;
+  void bound_links() noexcept;
+  [[nodiscard]] double reach_of(int i_joint, int i_link) const noexcept;
+
+  std::array<ArmJoint, N> joints_{};
+  Config lower_ = Config::Zero(), upper_ = Config::Zero();
+  Config v_max_ = Config::Zero(), a_max_ = Config::Zero();
+  Config is_continuous_ = Config::Zero();  // 1 or 0
+  Kinematics kinematics_{};
+  std::array<Mat3, N + 1> R_JL_{};  // link frame in its joint frame
+
+  std::array<LinkCapsule, kMaxLinkCapsules> sources_{};  // as described, attached ones last
+  std::array<BodyPair, kMaxBodyPairs> source_pairs_{};
+  int num_own_ = 0;  // sources before the attached ones
+  int num_source_pairs_ = 0;
+
+  int num_capsules_ = 0;
+  int num_bodies_ = 0;
+  int num_pairs_ = 0;
+  std::array<Capsule3, kMaxLinkCapsules> capsules_{};  // joint frames, by link and body
+  std::array<int, kMaxLinkCapsules> link_of_{};
+  std::array<int, N + 2> first_{};
+  std::array<Sphere3, N + 1> spheres_{};  // joint frames
+  std::array<ArmBody, kMaxBodies> bodies_{};
+  std::array<int, kMaxBodies> body_name_{};  // LinkCapsule::i_body
+  std::array<IndexPair, kMaxBodyPairs> pairs_{};
+  std::array<Config, N + 1> reach_{};  // [i_link][i_joint]
+};
+
+extern template class Arm<4>;
+extern template class Arm<5>;
+extern template class Arm<6>;
+extern template class Arm<7>;
+extern template class Arm<8>;
+
+}  // namespace sopt
