@@ -22,9 +22,14 @@ int report(const std::string& line, int exit_code) {
   return exit_code;
 }
 
+// The innermost command that was given has the help that helps.
 std::string help_hint(const CLI::App& app) {
-  const auto commands = app.get_subcommands();
-  return " (see sopt " + (commands.empty() ? "" : commands.front()->get_name() + ' ') + "--help)";
+  std::string names;
+  for (auto commands = app.get_subcommands(); !commands.empty();
+       commands = commands.front()->get_subcommands()) {
+    names += commands.front()->get_name() + ' ';
+  }
+  return " (see sopt " + names + "--help)";
 }
 
 int run(int argc, char** argv) {

@@ -178,6 +178,8 @@ std::string describe_plan(const Scene& scene, const PlanResult<Point2>& result,
   text += format("  optimisation  %d iterations, %d -> %d segments, cost %.5g, margin %.3g m\n",
                  result.iterations, result.segments_initial, result.segments_final, result.cost,
                  result.margin_m);
+  if (result.fell_back)
+    text += "                its result was refused: this is the path as sampled\n";
   text += describe_certificate(scene, result.plan->certificate());
   return text + describe_times(times, num_calls);
 }
