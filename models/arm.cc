@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "models/arm_checks.h"
+#include "models/pose3.h"
 
 namespace sopt {
 namespace {
@@ -106,9 +107,7 @@ void Arm<N>::fold_frames(const Pose3& X_WB) noexcept {
     k.turns[j] = 1.0 - k.slides[j];
     if (k.slides[j] > 0.0) k.has_prismatic = true;
   }
-  const Pose3& first = joints_[0].origin;
-  k.X_WJ1.rotation = X_WB.rotation * first.rotation * R_LJ[1];
-  k.X_WJ1.position = X_WB.rotation * first.position + X_WB.position;
+  k.X_WJ1 = compose(compose(X_WB, joints_[0].origin), {R_LJ[1], Vec3::Zero()});
   k.offset[0] = 0.0;
 }
 
@@ -118,6 +117,9 @@ ArmStatus Arm<N>::rebuild() noexcept {
   if (num_bodies_ > kMaxBodies) return ArmStatus::kTooManyBodies;
   resolve_pairs();
   bound_links();
+  cover_.build({capsules_.data(), at(num_capsules_)});
+  for (int l = 0; l <= N; ++l) link_cover_[at(l)] = to_cover(spheres_[at(l)]);
+  for (int b = 0; b < num_bodies_; ++b) body_cover_[at(b)] = to_cover(bodies_[at(b)].sphere);
   return ArmStatus::kOk;
 }
 
@@ -182,46 +184,49 @@ void Arm<N>::bound_links() noexcept {
     ArmBody& body = bodies_[at(b)];
     body.sphere = enclosing_sphere(all.subspan(at(body.first), at(body.last - body.first)));
   }
-  for (int l = 0; l <= N; ++l) {
-    for (int j = 0; j < N; ++j) reach_[at(l)][j] = j < l ? reach_of(j, l) : 0.0;
+  for (int j = 0; j < N; ++j) {
+    for (int k = 0; k < num_capsules_; ++k) {
+      const int l = capsule_link(k);
+      capsule_reach_[at(k)][j] = std::max(reach_of(j, l, capsules_[at(k)].p0),  //
+                                          reach_of(j, l, capsules_[at(k)].p1));
+    }
+    for (int l = 0; l <= N; ++l) {
+      reach_[at(l)][j] = reach_of(j, l, spheres_[at(l)].center);
+      for (int k = first_capsule(l); k < first_capsule(l + 1); ++k) {
+        reach_[at(l)][j] = std::max(reach_[at(l)][j], capsule_reach_[at(k)][j]);
+      }
+    }
+    for (int b = 0; b < num_bodies_; ++b) {
+      double& reach_m = reach_[at(bodies_[at(b)].i_link)][j];
+      reach_m = std::max(reach_m, reach_of(j, bodies_[at(b)].i_link, bodies_[at(b)].sphere.center));
+    }
   }
 }
 
-// Carries every point from its link down to the joint's frame. A joint that turns sweeps a ball
+// Carries the point from its link down to the joint's frame. A joint that turns sweeps a ball
 // about its axis, which a larger ball on the axis contains; one that slides lengthens it.
 template <int N>
-double Arm<N>::reach_of(int i_joint, int i_link) const noexcept {
+double Arm<N>::reach_of(int i_joint, int i_link, const Vec3& point) const noexcept {
   constexpr double kRounding = 1.0 + 1e-12;
+  if (i_joint >= i_link) return 0.0;
   if (joints_[at(i_joint)].kind == JointKind::kPrismatic) return 1.0;
-  double reach_m = 0.0;
-  const auto carry = [&](const Vec3& point) {
-    Reach reach{point};
-    for (int j = i_link - 1; j > i_joint; --j) {
-      const double c = kinematics_.cos_twist[j];
-      const double s = kinematics_.sin_twist[j];
-      Vec3& p = reach.center;
-      if (kinematics_.slides[j] > 0.0) {
-        reach.radius_m += 0.5 * (upper_[j] - lower_[j]);
-        p.z() += 0.5 * (upper_[j] + lower_[j]);
-        const double co = std::cos(kinematics_.offset[j]);
-        const double so = std::sin(kinematics_.offset[j]);
-        p = Vec3(co * p.x() - so * p.y(), so * p.x() + co * p.y(), p.z());
-      } else {
-        reach = {Vec3(0.0, 0.0, p.z()), reach.from_axis()};
-      }
-      p = Vec3(p.x(), c * p.y() - s * p.z(), s * p.y() + c * p.z()) + kinematics_.position[at(j)];
+  Reach reach{point};
+  for (int j = i_link - 1; j > i_joint; --j) {
+    const double c = kinematics_.cos_twist[j];
+    const double s = kinematics_.sin_twist[j];
+    Vec3& p = reach.center;
+    if (kinematics_.slides[j] > 0.0) {
+      reach.radius_m += 0.5 * (upper_[j] - lower_[j]);
+      p.z() += 0.5 * (upper_[j] + lower_[j]);
+      const double co = std::cos(kinematics_.offset[j]);
+      const double so = std::sin(kinematics_.offset[j]);
+      p = Vec3(co * p.x() - so * p.y(), so * p.x() + co * p.y(), p.z());
+    } else {
+      reach = {Vec3(0.0, 0.0, p.z()), reach.from_axis()};
     }
-    reach_m = std::max(reach_m, reach.from_axis());
-  };
-  carry(spheres_[at(i_link)].center);
-  for (int b = 0; b < num_bodies_; ++b) {
-    if (bodies_[at(b)].i_link == i_link) carry(bodies_[at(b)].sphere.center);
+    p = Vec3(p.x(), c * p.y() - s * p.z(), s * p.y() + c * p.z()) + kinematics_.position[at(j)];
   }
-  for (int i = first_capsule(i_link); i < first_capsule(i_link + 1); ++i) {
-    carry(capsules_[at(i)].p0);
-    carry(capsules_[at(i)].p1);
-  }
-  return reach_m * kRounding;
+  return reach.from_axis() * kRounding;
 }
 
 template class Arm<4>;

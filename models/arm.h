@@ -11,76 +11,25 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <span>
 
+#include "models/arm_cover.h"
+#include "models/arm_description.h"
+#include "models/capacity.h"
+#include "models/margin.h"
 #include "models/shape3.h"
 #include "rt/annotations.h"
 
 namespace sopt {
 
 class World3;
+struct ArmContact;
 
-inline constexpr int kMinArmJoints = 4;
-inline constexpr int kMaxArmJoints = 8;
-inline constexpr int kMaxLinkCapsules = 128;  // of all links together, attached ones included
-inline constexpr int kMaxBodies = 32;         // of all links together
-inline constexpr int kMaxBodyPairs = 64;
+// Links that may collide keep this distance. The least that leaves something to prove that a motion
+// between two checked configurations touches nothing.
+inline constexpr double kSelfClearance_m = 1e-4;
 // Stands for "no joint" where the index of one is expected.
 inline constexpr int kNoJoint = -1;
-
-enum class JointKind : std::int8_t { kRevolute, kContinuous, kPrismatic };
-
-struct ArmJoint {
-  Pose3 origin;               // joint frame in the frame of the link before it, at q = 0
-  Vec3 axis = Vec3::UnitZ();  // unit, in the joint frame
-  JointKind kind = JointKind::kRevolute;
-  double lower = 0.0;  // unit; -inf for continuous
-  double upper = 0.0;  // unit; +inf for continuous
-  double v_max = 0.0;  // unit/s, > 0
-  double a_max = 0.0;  // unit/s^2, > 0
-};
-
-// Part of a link. Capsules of one link that have different partners in self-collision belong to
-// different bodies; usually a link is one body.
-struct LinkCapsule {
-  int i_link = 0;
-  Vec3 p0 = Vec3::Zero();  // link frame
-  Vec3 p1 = Vec3::Zero();
-  double radius_m = 0.0;  // >= 0
-  int i_body = 0;         // within the link, 0..kMaxBodies - 1
-};
-
-// Two bodies that may collide; of different links.
-struct BodyPair {
-  int i_link_a = 0;
-  int i_link_b = 0;
-  int i_body_a = 0;
-  int i_body_b = 0;
-};
-
-template <int N>
-struct ArmDescription {
-  Pose3 X_WB;  // base in the world
-  std::array<ArmJoint, N> joints;
-  std::span<const LinkCapsule> capsules;  // any order
-  std::span<const BodyPair> pairs;        // a body without capsules touches nothing
-};
-
-enum class ArmStatus : std::int8_t {
-  kOk = 0,
-  kNotReset = -1,         // default: nothing was done
-  kNotFinite = -2,        // NaN or infinite, but for the limits of a continuous joint
-  kBadRotation = -3,      // a pose's rotation is not orthonormal and right-handed within 1e-9
-  kBadAxis = -4,          // not of length 1 within 1e-9
-  kBadLimits = -5,        // lower > upper, or a continuous joint with limits
-  kBadRate = -6,          // v_max or a_max <= 0
-  kBadRadius = -7,        // < 0
-  kBadLink = -8,          // no such link or body, or a pair within one link
-  kTooManyCapsules = -9,  // kMaxLinkCapsules
-  kTooManyBodies = -10,   // kMaxBodies
-  kTooManyPairs = -11,    // kMaxBodyPairs
-};
 
 // Frames in the world at one configuration: [0] base, [i] joint frame of link i (see the head of
 // this file); the z column is the axis of joint i - 1, the position is the link's origin.
@@ -95,6 +44,11 @@ struct ArmBody {
   int first = 0;
   int last = 0;
   Sphere3 sphere;  // joint frame; contains the capsules
+};
+
+template <int N>
+struct ConfigBox {
+  Eigen::Matrix<double, N, 1> lower, upper;
 };
 
 template <int N>
@@ -155,10 +109,25 @@ class Arm {
     for (int j = i_base; j < i_link; ++j) bound_m += reach_[at(i_link)][j] * abs_dq[j];
     return bound_m * (1.0 + 1e-14);
   }
+  // Likewise, of one capsule: those near the joints move less than the rest of their link.
+  [[nodiscard]] double capsule_displacement_bound(int i_capsule, const Config& abs_dq,
+                                                  int i_base = 0) const SOPT_RT {
+    double bound_m = 0.0;
+    for (int j = i_base; j < capsule_link(i_capsule); ++j) {
+      bound_m += capsule_reach_[at(i_capsule)][j] * abs_dq[j];
+    }
+    return bound_m * (1.0 + 1e-14);
+  }
 
   // --- metric and dynamics
   // b - a, the short way round for continuous joints: their share is in (-pi, pi].
   [[nodiscard]] Config difference(const Config& a, const Config& b) const SOPT_RT;
+  [[nodiscard]] bool is_continuous(int i_joint) const SOPT_RT {
+    return is_continuous_[i_joint] != 0.0;
+  }
+  // b up to whole turns of continuous joints, nearest to a: a + difference(a, b), but exactly b
+  // where no turn is taken.
+  [[nodiscard]] Config unwrapped(const Config& a, const Config& b) const SOPT_RT;
   // 2-norm of the difference: rad, sliding joints in m.
   [[nodiscard]] double path_distance(const Config& a, const Config& b) const SOPT_RT {
     return difference(a, b).norm();
@@ -181,6 +150,20 @@ class Arm {
   [[nodiscard]] bool within_limits(const Config& q) const SOPT_RT {
     return joint_outside_limits(q) == kNoJoint;
   }
+
+  // --- what planning asks
+  // Nominal length of a trajectory step when the request gives no speed: 0.05 s at 1 rad/s.
+  [[nodiscard]] double default_step_length(const World& /*world*/) const SOPT_RT { return 0.05; }
+  // The position limits; one turn of a continuous joint, from -pi.
+  [[nodiscard]] ConfigBox<N> sampling_box(const World& world,
+                                          const ClearanceRule& rule) const SOPT_RT;
+  // See arm_motion.h; pairs of links keep kSelfClearance_m.
+  [[nodiscard]] bool motion_is_clear(const World& world, const ClearanceRule& rule, const Config& a,
+                                     const Config& b) const SOPT_RT;
+  // The nearest obstacle at `q` (arm_clearance.h), kNoObstacle when none is within limit_m; or,
+  // with kSelfObstacle, the nearest pair of links when that is closer than kSelfClearance_m.
+  [[nodiscard]] ArmContact clearance(const World& world, const Config& q,
+                                     double limit_m) const SOPT_RT;
 
   // --- what the arm consists of
   [[nodiscard]] const ArmJoint& joint(int i_joint) const SOPT_RT { return joints_[at(i_joint)]; }
@@ -221,6 +204,20 @@ class Arm {
     bool has_prismatic = false;
   };
   [[nodiscard]] const Kinematics& kinematics() const SOPT_RT { return kinematics_; }
+  // Spheres whose union contains capsule i_capsule, in its joint frame.
+  [[nodiscard]] std::span<const CoverSphere> cover(int i_capsule) const SOPT_RT {
+    return cover_.of(i_capsule);
+  }
+  // As link_sphere_J and body(i_body).sphere.
+  [[nodiscard]] const CoverCapsule& capsule_lanes(int i_capsule) const SOPT_RT {
+    return cover_.capsule(i_capsule);
+  }
+  [[nodiscard]] const CoverSphere& link_cover(int i_link) const SOPT_RT {
+    return link_cover_[at(i_link)];
+  }
+  [[nodiscard]] const CoverSphere& body_cover(int i_body) const SOPT_RT {
+    return body_cover_[at(i_body)];
+  }
 
  private:
   [[nodiscard]] static constexpr std::size_t at(int i) noexcept {
@@ -235,7 +232,7 @@ class Arm {
   void sort_capsules() noexcept;
   void resolve_pairs() noexcept;
   void bound_links() noexcept;
-  [[nodiscard]] double reach_of(int i_joint, int i_link) const noexcept;
+  [[nodiscard]] double reach_of(int i_joint, int i_link, const Vec3& point) const noexcept;
 
   std::array<ArmJoint, N> joints_{};
   Config lower_ = Config::Zero(), upper_ = Config::Zero();
@@ -259,7 +256,11 @@ class Arm {
   std::array<ArmBody, kMaxBodies> bodies_{};
   std::array<int, kMaxBodies> body_name_{};  // LinkCapsule::i_body
   std::array<IndexPair, kMaxBodyPairs> pairs_{};
-  std::array<Config, N + 1> reach_{};  // [i_link][i_joint]
+  std::array<Config, N + 1> reach_{};                     // [i_link][i_joint]
+  std::array<Config, kMaxLinkCapsules> capsule_reach_{};  // [i_capsule][i_joint]
+  ArmCover cover_;
+  std::array<CoverSphere, N + 1> link_cover_{};
+  std::array<CoverSphere, kMaxBodies> body_cover_{};
 };
 
 extern template class Arm<4>;

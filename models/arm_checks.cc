@@ -4,13 +4,6 @@
 
 namespace sopt {
 
-bool is_rotation(const Mat3& rotation) noexcept {
-  constexpr double kTolerance = 1e-9;
-  const Mat3 defect = rotation * rotation.transpose() - Mat3::Identity();
-  return defect.cwiseAbs().maxCoeff() <= kTolerance &&
-         rotation.col(0).cross(rotation.col(1)).dot(rotation.col(2)) > 0.0;
-}
-
 ArmStatus check_joint(const ArmJoint& joint) noexcept {
   constexpr double kTolerance = 1e-9;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -6,11 +6,11 @@
 #include <limits>
 #include <span>
 
-#include "models/arm.h"
+#include "models/arm_description.h"
+#include "models/pose3.h"
 
 namespace sopt {
 
-[[nodiscard]] bool is_rotation(const Mat3& rotation) noexcept;
 [[nodiscard]] ArmStatus check_joint(const ArmJoint& joint) noexcept;
 [[nodiscard]] ArmStatus check_capsules(std::span<const LinkCapsule> capsules,
                                        int num_links) noexcept;

@@ -105,6 +105,15 @@ typename Arm<N>::Config Arm<N>::difference(const Config& a, const Config& b) con
 }
 
 template <int N>
+typename Arm<N>::Config Arm<N>::unwrapped(const Config& a, const Config& b) const SOPT_RT {
+  Config result = b;
+  for (int j = 0; j < N; ++j) {
+    result[j] -= is_continuous_[j] * 2.0 * kPi * std::ceil((b[j] - a[j] - kPi) / (2.0 * kPi));
+  }
+  return result;
+}
+
+template <int N>
 int Arm<N>::joint_outside_limits(const Config& q) const SOPT_RT {
   for (int j = 0; j < N; ++j) {
     if (!(q[j] >= lower_[j] && q[j] <= upper_[j])) return j;

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "models/arm_pairs.h"
+#include "models/config.h"
 #include "models/pose3.h"
 
 namespace sopt {

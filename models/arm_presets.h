@@ -1,15 +1,12 @@
 // Arms with five joints whose numbers are public. Positions, angles, limits and radii are restated
-// and rounded as their sources give them. No source publishes acceleration limits: they are 5 times
-// the velocity limit, per second. Links are checked against each other as models/arm_pairs.h says.
-// The base stands at the world's origin.
+// and rounded as their sources give them. No source publishes acceleration limits: they are
+// kAccelerationPerVelocity times the velocity limit. Links are checked against each other as
+// models/arm_pairs.h says. The base stands at the world's origin.
 #pragma once
 
 #include "models/arm.h"
 
 namespace sopt {
-
-// a_max / v_max where nobody says, 1/s: full speed after 0.2 s.
-inline constexpr double kAccelerationPerVelocity = 5.0;
 
 // FANUC LR Mate 200iD/7L, the first five of its six joints. Denavit-Hartenberg rows, limits and the
 // radii of four capsules: earlier public code of the authors of [Leu22]. Joint speeds: the maker's

@@ -1,8 +1,6 @@
-// Which boxes a thick segment may touch. A bounding-volume tree with eight children per node whose
-// boxes are tested four at a time; up to eight boxes are one node, so a handful of obstacles costs
-// no more than a plain scan, and thousands cost what is near. Packed bottom-up by
-// sort-tile-recursive order [Leutenegger, Lopez, Edgington 1997]. Build: O(n log n), no heap, at
-// setup or between requests. Query: never misses a box (conservative at box corners).
+// Which boxes a thick segment may touch: a tree of boxes (box_tree.h) tested four at a time. Build:
+// O(n log n), no heap, at setup or between requests. Query: never misses a box (conservative at box
+// corners).
 #pragma once
 
 #include <algorithm>
@@ -10,17 +8,16 @@
 #include <cstdint>
 #include <span>
 
-#include "alloc/fixed_vector.h"
+#include "models/box_tree.h"
 #include "models/convex2.h"
 #include "models/simd.h"
-#include "rt/annotations.h"
 
 namespace sopt {
 
 class BroadPhase2 {
  public:
   BroadPhase2() noexcept = default;
-  BroadPhase2(Arena& arena, int max_boxes) noexcept;
+  BroadPhase2(Arena& arena, int max_boxes) noexcept : tree_(arena, max_boxes) {}
 
   // Item i of a query is boxes[i]. False when there are more boxes than the capacity.
   [[nodiscard]] bool build(std::span<const Aabb2> boxes) noexcept;
@@ -30,43 +27,23 @@ class BroadPhase2 {
   // returns false. Returns false when it was stopped.
   template <class Visit>
   bool for_each_near(const Vec2& p, const Vec2& q, double radius_m, Visit&& visit) const {
-    if (nodes_.empty()) return true;
-    const ThickSegment segment(p, q, radius_m);
-    std::int32_t stack[kMaxDepth * kFanOut];
-    int depth = 0;
-    stack[depth++] = root_;
-    while (depth > 0) {
-      const Node& node = nodes_[stack[--depth]];
-      unsigned hits = segment.overlapping_lanes(node);
-      while (hits != 0) {
-        const auto lane = static_cast<unsigned>(__builtin_ctz(hits));
-        hits &= hits - 1;
-        const std::int32_t child = node.child[lane];
-        if (child >= 0) {
-          stack[depth++] = child;
-        } else if (!visit(static_cast<int>(~child))) {
-          return false;
-        }
-      }
-    }
-    return true;
+    return tree_.for_each_near(ThickSegment(p, q, radius_m), static_cast<Visit&&>(visit));
   }
 
  private:
-  static constexpr int kFanOut = 8;
-  static constexpr int kMaxDepth = 12;           // 8^12 boxes
   static constexpr double kEmptyLane = -1e300;   // half extent of unused lanes
   static constexpr double kMaxRadius_m = 1e290;  // beyond it unused lanes would overlap
 
   struct Node {
-    double center_x[kFanOut], center_y[kFanOut];
-    double half_x[kFanOut], half_y[kFanOut];  // hugely negative in unused lanes: never overlap
-    std::int32_t child[kFanOut];              // >= 0: node; < 0: ~box
-  };
+    double center_x[kTreeFanOut] = {}, center_y[kTreeFanOut] = {};
+    double half_x[kTreeFanOut] = {}, half_y[kTreeFanOut] = {};
+    std::int32_t child[kTreeFanOut] = {};
 
-  struct Entry {
-    Aabb2 box;
-    std::int32_t child = 0;
+    Node() noexcept {
+      std::fill_n(half_x, kTreeFanOut, kEmptyLane);
+      std::fill_n(half_y, kTreeFanOut, kEmptyLane);
+    }
+    void set_box(int lane, const Aabb2& box) noexcept;
   };
 
   struct ThickSegment {
@@ -90,7 +67,7 @@ class BroadPhase2 {
     // Separating axes: the box's two and the segment's normal.
     [[nodiscard]] unsigned overlapping_lanes(const Node& node) const noexcept {
       unsigned lanes = 0;
-      for (int i = 0; i < kFanOut; i += kLanesDouble) {
+      for (int i = 0; i < kTreeFanOut; i += kLanesDouble) {
         const V4d dx = load4(node.center_x + i) - mid_x;
         const V4d dy = load4(node.center_y + i) - mid_y;
         const V4d hx = load4(node.half_x + i);
@@ -104,11 +81,7 @@ class BroadPhase2 {
     }
   };
 
-  void add_level(int first_entry, int num_entries) noexcept;
-
-  FixedVector<Node> nodes_;
-  FixedVector<Entry> entries_;  // scratch of the build
-  std::int32_t root_ = 0;
+  BoxTree<Aabb2, Node> tree_;
 };
 
 }  // namespace sopt

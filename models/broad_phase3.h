@@ -1,25 +1,21 @@
-// Which boxes an axis-aligned box may touch. A bounding-volume tree with eight children per node
-// whose boxes are tested four at a time; up to eight boxes are one node, so a handful of obstacles
-// costs no more than a plain scan, and thousands cost what is near. Packed bottom-up by
-// sort-tile-recursive order [Leutenegger, Lopez, Edgington 1997]. Build: O(n log n), no heap, at
-// setup or between requests. Query: never misses a box.
+// Which boxes an axis-aligned box may touch: a tree of boxes (box_tree.h) tested four at a time.
+// Build: O(n log n), no heap, at setup or between requests. Query: never misses a box.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 #include <span>
 
-#include "alloc/fixed_vector.h"
+#include "models/box_tree.h"
 #include "models/shape3.h"
 #include "models/simd.h"
-#include "rt/annotations.h"
 
 namespace sopt {
 
 class BroadPhase3 {
  public:
   BroadPhase3() noexcept = default;
-  BroadPhase3(Arena& arena, int max_boxes) noexcept;
+  BroadPhase3(Arena& arena, int max_boxes) noexcept : tree_(arena, max_boxes) {}
 
   // Item i of a query is boxes[i]. False when there are more boxes than the capacity.
   [[nodiscard]] bool build(std::span<const Aabb3> boxes) noexcept;
@@ -29,42 +25,24 @@ class BroadPhase3 {
   // false. Returns false when it was stopped.
   template <class Visit>
   bool for_each_near(const Aabb3& area, Visit&& visit) const {
-    if (nodes_.empty()) return true;
-    const Query query(area);
-    std::int32_t stack[kMaxDepth * kFanOut];
-    int depth = 0;
-    stack[depth++] = root_;
-    while (depth > 0) {
-      const Node& node = nodes_[stack[--depth]];
-      unsigned hits = query.overlapping_lanes(node);
-      while (hits != 0) {
-        const auto lane = static_cast<unsigned>(__builtin_ctz(hits));
-        hits &= hits - 1;
-        const std::int32_t child = node.child[lane];
-        if (child >= 0) {
-          stack[depth++] = child;
-        } else if (!visit(static_cast<int>(~child))) {
-          return false;
-        }
-      }
-    }
-    return true;
+    return tree_.for_each_near(Query(area), static_cast<Visit&&>(visit));
   }
 
  private:
-  static constexpr int kFanOut = 8;
-  static constexpr int kMaxDepth = 12;         // 8^12 boxes
   static constexpr double kEmptyLane = 1e300;  // lower bound of unused lanes
   static constexpr double kMaxArea_m = 1e290;  // beyond it unused lanes would overlap
 
   struct Node {
-    double lower[3][kFanOut], upper[3][kFanOut];  // lower > upper in unused lanes: never overlap
-    std::int32_t child[kFanOut];                  // >= 0: node; < 0: ~box
-  };
+    double lower[3][kTreeFanOut] = {}, upper[3][kTreeFanOut] = {};
+    std::int32_t child[kTreeFanOut] = {};
 
-  struct Entry {
-    Aabb3 box;
-    std::int32_t child = 0;
+    Node() noexcept {
+      for (int axis = 0; axis < 3; ++axis) {
+        std::fill_n(lower[axis], kTreeFanOut, kEmptyLane);
+        std::fill_n(upper[axis], kTreeFanOut, -kEmptyLane);
+      }
+    }
+    void set_box(int lane, const Aabb3& box) noexcept;
   };
 
   struct Query {
@@ -75,7 +53,7 @@ class BroadPhase3 {
 
     [[nodiscard]] unsigned overlapping_lanes(const Node& node) const noexcept {
       unsigned lanes = 0;
-      for (int i = 0; i < kFanOut; i += kLanesDouble) {
+      for (int i = 0; i < kTreeFanOut; i += kLanesDouble) {
         V4d gap = splat4(-kEmptyLane);
         for (int axis = 0; axis < 3; ++axis) {
           gap = max4(gap, load4(node.lower[axis] + i) - upper[axis]);
@@ -87,12 +65,7 @@ class BroadPhase3 {
     }
   };
 
-  void sort_along(int axis, int first, int last) noexcept;
-  void add_node(int first_entry, int num_entries) noexcept;
-
-  FixedVector<Node> nodes_;
-  FixedVector<Entry> entries_;  // scratch of the build
-  std::int32_t root_ = 0;
+  BoxTree<Aabb3, Node> tree_;
 };
 
 }  // namespace sopt

@@ -1,6 +1,6 @@
-// The defaults of the library, in one place. `PlannerSettings` and `WorldCapacity` size memory at
-// setup; `PlanOptions` travel with each request. Units are in the names; numbers that come from a
-// measurement name it in docs/RESULTS.md.
+// The defaults of the library, in one place. `PlannerSettings` and the capacities of worlds size
+// memory at setup; `PlanOptions` travel with each request. Units are in the names; numbers that
+// come from a measurement name it in docs/RESULTS.md.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +31,7 @@ enum class MergeRule : std::int8_t {
   kOff,
   kPaired,   // Deviation: keeps the parity of all other windows, see opt/splits.h
   kPrinted,  // [Leu22, Alg. 1 l.13]: the end that two windows share goes
+  kEager,    // Deviation: kPaired, whatever the two gained, if both took their whole step
 };
 
 // What happens to the time axis as the path gets shorter.
@@ -44,6 +45,14 @@ struct WorldCapacity {
   int max_obstacles = 8192;
   int max_vertices = 65536;  // of all obstacles together, each rounded up to a multiple of 4
 };
+
+struct World3Capacity {
+  int max_obstacles = 1024;
+  int max_hulls = 128;  // among them
+};
+
+// a_max / v_max of a joint where nobody says, 1/s: full speed after 0.2 s.
+inline constexpr double kAccelerationPerVelocity = 5.0;
 
 // Sizes the planner's memory; fixed for its life.
 struct PlannerSettings {
@@ -60,6 +69,15 @@ struct PlannerSettings {
     return max_horizon >= 2 && num_streams >= 1 && num_streams <= kMaxStreams &&
            nodes_per_stream >= 4 && max_path_vertices >= 4 && max_lattice_points >= 0 &&
            max_window >= 4 && max_window <= kMaxWindow && rows_per_window >= 0;
+  }
+  // For arms.
+  [[nodiscard]] static constexpr PlannerSettings arm() noexcept {
+    PlannerSettings settings;
+    settings.max_horizon = 1024;
+    settings.nodes_per_stream = 8192;
+    settings.max_window = 160;  // Deviation: eager merging ends at one window, which is best
+    settings.rows_per_window = 768;
+    return settings;
   }
   // The least that is valid.
   [[nodiscard]] static constexpr PlannerSettings smallest() noexcept {
@@ -95,6 +113,19 @@ struct PlanOptions {
   int max_iterations = 20;        // [Leu22, III-B termination (1)]
   double tol_step = 1e-3;         // cost per step, see opt/segmented_optimizer.h
 
+  // For arms: speed_mps is in units of the path metric (rad/s), dt and margin are smaller.
+  [[nodiscard]] static constexpr PlanOptions arm() noexcept {
+    PlanOptions options;
+    options.speed_mps = 1.0;
+    options.dt_s = 0.05;
+    options.margin_m = 0.02;
+    options.num_batches = 16;  // the first ones give up early, see sampler/tuning.h
+    options.merge = MergeRule::kEager;
+    options.steps_per_window = 160;  // one window is best as long as it fits (docs/segments.md)
+    options.tol_step = 4e-3;         // 2 % of cost for a quarter of the time (docs/RESULTS.md)
+    return options;
+  }
+
   // The choices of [Leu22], each of which can be made alone. Needs PlannerSettings::dense_solver.
   [[nodiscard]] static constexpr PlanOptions paper() noexcept {
     PlanOptions options;
@@ -108,6 +139,14 @@ struct PlanOptions {
     options.solver = WindowSolver::kDense;
     options.accept = false;
     options.zero_input_start = true;
+    return options;
+  }
+  // For arms. Deviation: a new horizon after every sweep would break a double integrator's
+  // dynamics, and joint space has no label map: waypoints keep clear of everything near.
+  [[nodiscard]] static constexpr PlanOptions paper_arm() noexcept {
+    PlanOptions options = paper();
+    options.resampling = Resampling::kOff;
+    options.rows = RowMode::kWaypoint;
     return options;
   }
 };

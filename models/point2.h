@@ -33,6 +33,10 @@ struct Point2 {
     return a + s * (b - a);
   }
 
+  // Nothing turns without end.
+  [[nodiscard]] static constexpr bool is_continuous(int /*i_dof*/) SOPT_RT { return false; }
+  [[nodiscard]] static Config unwrapped(const Config& /*a*/, const Config& b) SOPT_RT { return b; }
+
   // Nominal length of a trajectory step when the request gives no speed, m.
   [[nodiscard]] double default_step_length(const World& world) const SOPT_RT {
     const double share_m = (world.bounds().upper - world.bounds().lower).norm() / 200.0;

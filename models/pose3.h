@@ -1,4 +1,5 @@
-// Rigid motions at setup: composition, and rotations from the angles robot files give.
+// Rigid motions at setup: composition, the check of a rotation, and rotations from the angles robot
+// files give.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -15,6 +16,13 @@ namespace sopt {
 
 [[nodiscard]] inline Vec3 transform(const Pose3& pose, const Vec3& p) SOPT_RT {
   return pose.rotation * p + pose.position;
+}
+
+// Orthonormal within 1e-9 and right-handed; NaN is not.
+[[nodiscard]] inline bool is_rotation(const Mat3& rotation) SOPT_RT {
+  constexpr double kTolerance = 1e-9;
+  const Mat3 defect = rotation.transpose() * rotation - Mat3::Identity();
+  return defect.cwiseAbs().maxCoeff() <= kTolerance && rotation.determinant() > 0.0;
 }
 
 // R_z(yaw) R_y(pitch) R_x(roll) of (roll, pitch, yaw).

@@ -4,21 +4,16 @@
 #include <cmath>
 
 #include "models/hull3.h"
+#include "models/pose3.h"
 #include "models/simd.h"
 
 namespace sopt {
 namespace {
 
-constexpr double kRotationTolerance = 1e-9;
-
 // Orthonormal to rounding is what the closed forms need; what is nearly so is made so.
 WorldStatus check_pose(const Pose3& pose, Mat3& axes) noexcept {
   if (!pose.rotation.allFinite() || !pose.position.allFinite()) return WorldStatus::kNotFinite;
-  const Mat3 gram = pose.rotation.transpose() * pose.rotation;
-  if ((gram - Mat3::Identity()).cwiseAbs().maxCoeff() > kRotationTolerance ||
-      pose.rotation.determinant() < 0.0) {
-    return WorldStatus::kBadRotation;
-  }
+  if (!is_rotation(pose.rotation)) return WorldStatus::kBadRotation;
   axes.col(2) = pose.rotation.col(2).normalized();
   axes.col(1) = axes.col(2).cross(pose.rotation.col(0)).normalized();
   axes.col(0) = axes.col(1).cross(axes.col(2));

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 
+#include "models/capacity.h"
 #include "models/world_status.h"
 #include "rt/annotations.h"
 
@@ -16,11 +17,6 @@ namespace sopt {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
-
-inline constexpr int kMinHullVertices = 4;
-inline constexpr int kMaxHullVertices = 32;
-inline constexpr int kMaxHullPlanes = 2 * kMaxHullVertices - 4;
-inline constexpr int kMaxHullEdges = 3 * kMaxHullVertices - 6;
 
 // Frame of a body in the world: z_W = rotation z_B + position.
 struct Pose3 {

@@ -33,6 +33,15 @@ inline constexpr int kLanesFloat = 8;
 [[gnu::always_inline]] inline V4d splat4(double s) noexcept { return V4d{s, s, s, s}; }
 [[gnu::always_inline]] inline V8f splat8(float s) noexcept { return V8f{s, s, s, s, s, s, s, s}; }
 
+// Both rounded to float.
+[[gnu::always_inline]] inline V8f join8(V4d low, V4d high) noexcept {
+  using V4f = float __attribute__((vector_size(16)));
+  const V4f halves[2] = {__builtin_convertvector(low, V4f), __builtin_convertvector(high, V4f)};
+  V8f v;
+  std::memcpy(&v, halves, sizeof v);
+  return v;
+}
+
 [[gnu::always_inline]] inline V4d abs4(V4d v) noexcept { return v < 0.0 ? -v : v; }
 [[gnu::always_inline]] inline V4d min4(V4d a, V4d b) noexcept { return a < b ? a : b; }
 [[gnu::always_inline]] inline V4d max4(V4d a, V4d b) noexcept { return a > b ? a : b; }

@@ -6,19 +6,11 @@
 namespace sopt {
 namespace {
 
-constexpr unsigned kAllLanes = 0xFF;
-
 float rounded_up(double value) noexcept {
   const auto nearest = static_cast<float>(value);
   return static_cast<double>(nearest) < value
              ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
              : nearest;
-}
-
-double min_of(const V8f& v) noexcept {
-  float low = v[0];
-  for (int i = 1; i < kLanesFloat; ++i) low = v[i] < low ? v[i] : low;
-  return static_cast<double>(low);
 }
 
 V8f dot8(const float* axis, const V8f& x, const V8f& y, const V8f& z) noexcept {
@@ -56,57 +48,42 @@ V8f cylinder_distance2(const float (*axis)[3], const float* half, const V8f& x, 
 
 }  // namespace
 
-struct LaneWorld3::Lanes {
-  SphereLanes spheres;
-  V8f padded_radius_m;  // with the sphere's share of the pad
+ObstacleLanes3::ObstacleLanes3(Arena& arena, int max_obstacles, int max_hulls) noexcept
+    : obstacles_(arena, max_obstacles), planes_(arena, max_hulls * kMaxHullPlanes) {}
 
-  explicit Lanes(const SphereLanes& s) noexcept
-      : spheres(s), padded_radius_m(s.radius_m + kPad * (abs8(s.x) + abs8(s.y) + abs8(s.z))) {}
-};
-
-LaneWorld3::LaneWorld3(Arena& arena, const World3Capacity& capacity) noexcept
-    : obstacles_(arena, capacity.max_obstacles),
-      planes_(arena, capacity.max_hulls * kMaxHullPlanes) {}
-
-std::size_t LaneWorld3::required_bytes(const World3Capacity& capacity) noexcept {
-  Arena arena = Arena::measuring();
-  const LaneWorld3 world(arena, capacity);
-  return arena.used_B();
-}
-
-void LaneWorld3::build(const World3& world) noexcept {
+void ObstacleLanes3::clear() noexcept {
   obstacles_.clear();
   planes_.clear();
-  world_ = &world;
-  for (int i = 0; i < world.num_obstacles(); ++i) {
-    const Convex3& shape = world.obstacle(i);
-    Obstacle o;
-    o.kind = shape.kind;
-    for (int row = 0; row < 3; ++row) {
-      o.center[row] = static_cast<float>(shape.center[row]);
-      o.half[row] = static_cast<float>(shape.half_m[row]);
-      for (int k = 0; k < 3; ++k) o.axis[row][k] = static_cast<float>(shape.axes(k, row));
-    }
-    o.own_margin_m = rounded_up(world.obstacle_margin_m(i));
-    const Aabb3& box = world.obstacle_box(i);
-    const double extent_m = shape.center.lpNorm<1>() + (box.upper - box.lower).lpNorm<1>();
-    o.radius_m = rounded_up(shape.radius_m + static_cast<double>(kPad) * extent_m);
-    o.first_plane = planes_.size();
-    if (shape.kind == CoreKind::kHull) {
-      const HullData& hull = *shape.hull;
-      o.num_planes = hull.num_planes;
-      for (int k = 0; k < hull.num_planes; ++k) {
-        const Eigen::Vector3f normal = hull.normal[k].cast<float>();
-        (void)planes_.try_push_back(
-            {{normal.x(), normal.y(), normal.z()}, static_cast<float>(hull.offset[k])});
-      }
-    }
-    (void)obstacles_.try_push_back(o);
-  }
 }
 
-V8f LaneWorld3::distance2(const Obstacle& o, const V8f& x, const V8f& y,
-                          const V8f& z) const SOPT_RT {
+void ObstacleLanes3::add(const Convex3& shape, const Aabb3& box, double margin_m) noexcept {
+  Obstacle o;
+  o.kind = shape.kind;
+  for (int row = 0; row < 3; ++row) {
+    o.center[row] = static_cast<float>(shape.center[row]);
+    o.half[row] = static_cast<float>(shape.half_m[row]);
+    for (int k = 0; k < 3; ++k) o.axis[row][k] = static_cast<float>(shape.axes(k, row));
+  }
+  o.own_margin_m = rounded_up(margin_m);
+  const double extent_m = shape.center.lpNorm<1>() + (box.upper - box.lower).lpNorm<1>();
+  const double pad_m = static_cast<double>(PaddedLanes::kPad) * extent_m;
+  o.radius_m = rounded_up(shape.radius_m + pad_m);
+  o.pad_m = rounded_up(pad_m);
+  o.first_plane = planes_.size();
+  if (shape.kind == CoreKind::kHull) {
+    const HullData& hull = *shape.hull;
+    o.num_planes = hull.num_planes;
+    for (int k = 0; k < hull.num_planes; ++k) {
+      const Eigen::Vector3f normal = hull.normal[k].cast<float>();
+      (void)planes_.try_push_back(
+          {{normal.x(), normal.y(), normal.z()}, static_cast<float>(hull.offset[k])});
+    }
+  }
+  (void)obstacles_.try_push_back(o);
+}
+
+V8f ObstacleLanes3::distance2(const Obstacle& o, const V8f& x, const V8f& y,
+                              const V8f& z) const SOPT_RT {
   switch (o.kind) {
     case CoreKind::kPoint:
       return x * x + y * y + z * z;
@@ -123,8 +100,8 @@ V8f LaneWorld3::distance2(const Obstacle& o, const V8f& x, const V8f& y,
   return distance * distance;
 }
 
-V8f LaneWorld3::plane_distance(const Obstacle& o, const V8f& x, const V8f& y,
-                               const V8f& z) const SOPT_RT {
+V8f ObstacleLanes3::plane_distance(const Obstacle& o, const V8f& x, const V8f& y,
+                                   const V8f& z) const SOPT_RT {
   V8f best = splat8(-std::numeric_limits<float>::infinity());
   for (int i = 0; i < o.num_planes; ++i) {
     const Plane& plane = planes_[o.first_plane + i];
@@ -133,9 +110,8 @@ V8f LaneWorld3::plane_distance(const Obstacle& o, const V8f& x, const V8f& y,
   return best;
 }
 
-// Where squares overflow or are undefined, near.
-unsigned LaneWorld3::lanes_near_one(const Obstacle& o, const Lanes& lanes,
-                                    const ClearanceRule& rule) const SOPT_RT {
+unsigned ObstacleLanes3::lanes_near_one(const Obstacle& o, const PaddedLanes& lanes,
+                                        const ClearanceRule& rule) const SOPT_RT {
   const V8f x = lanes.spheres.x - o.center[0];
   const V8f y = lanes.spheres.y - o.center[1];
   const V8f z = lanes.spheres.z - o.center[2];
@@ -145,24 +121,34 @@ unsigned LaneWorld3::lanes_near_one(const Obstacle& o, const Lanes& lanes,
   return ~lane_mask8(distance2(o, x, y, z) > limit * limit) & kAllLanes;
 }
 
-unsigned LaneWorld3::lanes_near(const SphereLanes& spheres,
-                                const ClearanceRule& rule) const SOPT_RT {
-  const Lanes lanes(spheres);
-  const V8f infinity = splat8(std::numeric_limits<float>::infinity());
-  if (lane_mask8(lanes.padded_radius_m < infinity) != kAllLanes) return kAllLanes;
+unsigned ObstacleLanes3::lanes_near(int i_obstacle, const PaddedLanes& lanes,
+                                    const ClearanceRule& rule) const SOPT_RT {
+  return lanes_near_one(obstacles_[i_obstacle], lanes, rule);
+}
+
+NestedNear ObstacleLanes3::lanes_near(int i_obstacle, const NestedLanes& lanes,
+                                      const ClearanceRule& rule) const SOPT_RT {
+  const Obstacle& o = obstacles_[i_obstacle];
+  const V8f pad_m = PaddedLanes::kPad * (abs8(lanes.x) + abs8(lanes.y) + abs8(lanes.z));
+  const V8f d2 = distance2(o, lanes.x - o.center[0], lanes.y - o.center[1], lanes.z - o.center[2]);
+  const float required_m =
+      static_cast<float>(rule.required_m(static_cast<double>(o.own_margin_m))) + o.radius_m;
+  const auto may_be_within = [&](const V8f& reach_m) __attribute__((always_inline)) {
+    return ~lane_mask8(d2 > reach_m * reach_m) & kAllLanes;
+  };
+  const V8f within_m = (lanes.inner_m + required_m - 2.0F * o.pad_m) - 2.0F * pad_m;
+  // Of a hull d2 is a lower bound.
+  const unsigned inner = o.kind == CoreKind::kHull
+                             ? 0U
+                             : lane_mask8(within_m > 0.0F) & lane_mask8(d2 < within_m * within_m);
+  return {may_be_within(lanes.wide_m + pad_m + required_m),
+          may_be_within(lanes.radius_m + pad_m + required_m), inner};
+}
+
+unsigned ObstacleLanes3::lanes_near(const PaddedLanes& lanes,
+                                    const ClearanceRule& rule) const SOPT_RT {
   unsigned near = 0;
-  if (obstacles_.size() <= kMaxScan) {
-    for (const Obstacle& o : obstacles_) near |= lanes_near_one(o, lanes, rule);
-    return near;
-  }
-  const double reach_m = world_->max_required_m(rule) - min_of(-lanes.padded_radius_m);
-  const Vec3 lower(min_of(spheres.x), min_of(spheres.y), min_of(spheres.z));
-  const Vec3 upper(-min_of(-spheres.x), -min_of(-spheres.y), -min_of(-spheres.z));
-  const Aabb3 area{lower - Vec3::Constant(reach_m), upper + Vec3::Constant(reach_m)};
-  (void)world_->for_each_near(area, [&](int i) {
-    near |= lanes_near_one(obstacles_[i], lanes, rule);
-    return near != kAllLanes;
-  });
+  for (const Obstacle& o : obstacles_) near |= lanes_near_one(o, lanes, rule);
   return near;
 }
 

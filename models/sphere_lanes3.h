@@ -1,8 +1,8 @@
-// Eight spheres at once, in float, against every obstacle of a world: which of them may come closer
+// Eight spheres at once, in float, against the obstacles of a world: which of them may come closer
 // than the obstacle asks for. Strict: a lane is never called clear when the exact distance in
 // double says otherwise. Points against point, segment, box and cylinder cores in closed form; of a
-// hull the largest plane distance, a lower bound of the distance. Up to kMaxScan obstacles are all
-// tested; more go through the world's broad phase. 5 to 7 ns per obstacle.
+// hull the largest plane distance, a lower bound of the distance. 5 to 7 ns per obstacle. World3
+// owns the obstacles' side and says which of them to test.
 //
 // The pad. Let u = 2^-24 and m = |x|+|y|+|z| of the sphere plus |center| + sizes of the obstacle
 // (1-norms). Against exact arithmetic, each component of a local coordinate is off by at most 2 u m
@@ -16,8 +16,8 @@
 
 #include "alloc/fixed_vector.h"
 #include "models/margin.h"
+#include "models/shape3.h"
 #include "models/simd.h"
-#include "models/world3.h"
 #include "rt/annotations.h"
 
 namespace sopt {
@@ -29,31 +29,60 @@ struct SphereLanes {
   V8f radius_m;
 };
 
-// What the lanes need of a world, as floats. If a sphere is not finite, all lanes are near.
-class LaneWorld3 {
+inline constexpr unsigned kAllLanes = 0xFF;
+
+// Spheres with their share of the pad.
+struct PaddedLanes {
+  SphereLanes spheres;
+  V8f padded_radius_m;
+
+  explicit PaddedLanes(const SphereLanes& s) noexcept
+      : spheres(s), padded_radius_m(s.radius_m + kPad * (abs8(s.x) + abs8(s.y) + abs8(s.z))) {}
+
+  static constexpr float kPad = 0x1p-18F;
+};
+
+// Spheres around the same middles, told apart in one test.
+struct NestedLanes {
+  V8f x, y, z;     // rounded from double
+  V8f wide_m;      // radius, not rounded down
+  float radius_m;  // likewise, at most wide_m
+  float inner_m;   // radius, not rounded up; may be negative
+};
+// Lanes where the wide sphere and the sphere may be closer to an obstacle than `rule` asks for, and
+// lanes where the inner one is, for sure.
+struct NestedNear {
+  unsigned wide, sphere, inner;
+};
+
+// Obstacles as floats.
+class ObstacleLanes3 {
  public:
-  LaneWorld3(Arena& arena, const World3Capacity& capacity) noexcept;
-  [[nodiscard]] static std::size_t required_bytes(const World3Capacity& capacity) noexcept;
+  ObstacleLanes3(Arena& arena, int max_obstacles, int max_hulls) noexcept;
 
-  // Copies the obstacles of a world that is built and outlives this; call after World3::build.
-  void build(const World3& world) noexcept;
+  void clear() noexcept;
+  // `margin_m` as World3::try_add takes it, `box` around the shape. Beyond the capacity: ignored.
+  void add(const Convex3& shape, const Aabb3& box, double margin_m) noexcept;
+  [[nodiscard]] int size() const SOPT_RT { return obstacles_.size(); }
 
-  // Bit i is set when sphere i may be closer to an obstacle than `rule` asks for.
-  [[nodiscard]] unsigned lanes_near(const SphereLanes& spheres,
+  // Bit i is set when sphere i may be closer to the obstacle than `rule` asks for; where squares
+  // overflow or are undefined, too.
+  [[nodiscard]] unsigned lanes_near(int i_obstacle, const PaddedLanes& lanes,
+                                    const ClearanceRule& rule) const SOPT_RT;
+  [[nodiscard]] NestedNear lanes_near(int i_obstacle, const NestedLanes& lanes,
+                                      const ClearanceRule& rule) const SOPT_RT;
+  // Of any obstacle.
+  [[nodiscard]] unsigned lanes_near(const PaddedLanes& lanes,
                                     const ClearanceRule& rule) const SOPT_RT;
 
  private:
-  static constexpr int kMaxScan = 16;
-  static constexpr float kPad = 0x1p-18F;
-
-  struct Lanes;  // the spheres and what their pads share
-
   struct Obstacle {
     CoreKind kind = CoreKind::kPoint;
     float center[3] = {};
     float axis[3][3] = {};  // axis[i]: direction i of box and cylinder; 2: of a segment
     float half[3] = {};
     float radius_m = 0.0F;      // rounded up, own pad added
+    float pad_m = 0.0F;         // of that
     float own_margin_m = 0.0F;  // rounded up; < 0: the rule's
     std::int32_t first_plane = 0;
     std::int32_t num_planes = 0;
@@ -67,12 +96,11 @@ class LaneWorld3 {
                               const V8f& z) const SOPT_RT;
   [[nodiscard]] V8f plane_distance(const Obstacle& obstacle, const V8f& x, const V8f& y,
                                    const V8f& z) const SOPT_RT;
-  [[nodiscard]] unsigned lanes_near_one(const Obstacle& obstacle, const Lanes& lanes,
+  [[nodiscard]] unsigned lanes_near_one(const Obstacle& obstacle, const PaddedLanes& lanes,
                                         const ClearanceRule& rule) const SOPT_RT;
 
   FixedVector<Obstacle> obstacles_;
   FixedVector<Plane> planes_;
-  const World3* world_ = nullptr;
 };
 
 }  // namespace sopt

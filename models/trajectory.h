@@ -18,12 +18,20 @@ struct Path {
   Path(Arena& arena, int max_vertices) noexcept : vertices(arena, max_vertices) {}
 
   // In the robot's path metric.
-  [[nodiscard]] double length() const SOPT_RT {
+  [[nodiscard]] double length(const Robot& robot) const SOPT_RT {
     double sum = 0.0;
     for (int i = 1; i < vertices.size(); ++i) {
-      sum += Robot::path_distance(vertices[i - 1], vertices[i]);
+      sum += robot.path_distance(vertices[i - 1], vertices[i]);
     }
     return sum;
+  }
+
+  // Takes whole turns out of joints that turn without end, so that consecutive vertices differ by
+  // the motion between them.
+  void unwrap(const Robot& robot) SOPT_RT {
+    for (int i = 1; i < vertices.size(); ++i) {
+      vertices[i] = robot.unwrapped(vertices[i - 1], vertices[i]);
+    }
   }
 
   FixedVector<typename Robot::Config> vertices;

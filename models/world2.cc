@@ -192,6 +192,7 @@ NearestObstacle World2::nearest(const Vec2& p, const Vec2& q, double limit_m) co
 
 bool World2::is_clear(const Vec2& p, const Vec2& q, double radius_m,
                       const ClearanceRule& rule) const SOPT_RT {
+  if (!std::isfinite((p + q).sum() + radius_m)) return false;
   if (bounds_distance(p, q) < radius_m + rule.required_m(kDefaultMargin)) return false;
   return for_each_near(p, q, radius_m + max_required_m(rule), [&](int i) {
     return !is_within(obstacle(i), p, q, radius_m + rule.required_m(obstacles_[i].margin_m));

@@ -60,7 +60,7 @@ class World2 {
   [[nodiscard]] NearestObstacle nearest(const Vec2& p, const Vec2& q, double limit_m) const SOPT_RT;
 
   // True when a disc of `radius_m` that moves from p to q keeps the clearance that `rule` asks for
-  // from every obstacle and from the bounds. Exact.
+  // from every obstacle and from the bounds. Exact. False for a disc or motion that is not finite.
   [[nodiscard]] bool is_clear(const Vec2& p, const Vec2& q, double radius_m,
                               const ClearanceRule& rule) const SOPT_RT;
 

@@ -9,13 +9,20 @@ Aabb3 grown(const Aabb3& box, double by_m) noexcept {
   return {box.lower - Vec3::Constant(by_m), box.upper + Vec3::Constant(by_m)};
 }
 
+double min_of(const V8f& v) noexcept {
+  float low = v[0];
+  for (int i = 1; i < kLanesFloat; ++i) low = v[i] < low ? v[i] : low;
+  return static_cast<double>(low);
+}
+
 }  // namespace
 
 World3::World3(Arena& arena, const World3Capacity& capacity) noexcept
     : obstacles_(arena, capacity.max_obstacles),
       boxes_(arena, capacity.max_obstacles),
       hulls_(arena, capacity.max_hulls),
-      broad_phase_(arena, capacity.max_obstacles) {}
+      broad_phase_(arena, capacity.max_obstacles),
+      lanes_(arena, capacity.max_obstacles, capacity.max_hulls) {}
 
 std::size_t World3::required_bytes(const World3Capacity& capacity) noexcept {
   Arena arena = Arena::measuring();
@@ -28,7 +35,9 @@ void World3::reset() noexcept {
   boxes_.clear();
   hulls_.clear();
   max_own_margin_m_ = kDefaultMargin;
-  (void)broad_phase_.build({});
+  min_own_margin_m_ = kDefaultMargin;
+  has_default_margin_ = false;
+  build();
 }
 
 WorldStatus World3::try_add(const Sphere3& sphere, double margin_m) noexcept {
@@ -82,10 +91,20 @@ WorldStatus World3::check_room(double margin_m) const noexcept {
 void World3::add(const Convex3& shape, double margin_m) noexcept {
   if (!obstacles_.try_push_back({shape, margin_m})) return;  // cannot happen: check_room
   (void)boxes_.try_push_back(bounding_box(shape));
+  if (margin_m < 0.0) {
+    has_default_margin_ = true;
+    return;
+  }
   max_own_margin_m_ = std::max(max_own_margin_m_, margin_m);
+  min_own_margin_m_ = min_own_margin_m_ < 0.0 ? margin_m : std::min(min_own_margin_m_, margin_m);
 }
 
-void World3::build() noexcept { (void)broad_phase_.build(boxes_.span()); }
+void World3::build() noexcept {
+  (void)broad_phase_.build(boxes_.span());
+  lanes_.clear();
+  for (int i = 0; i < num_obstacles(); ++i)
+    lanes_.add(obstacle(i), boxes_[i], obstacle_margin_m(i));
+}
 
 NearestObstacle World3::nearest(const Capsule3& body, double limit_m) const SOPT_RT {
   NearestObstacle best{limit_m, kNoObstacle};
@@ -101,8 +120,29 @@ NearestObstacle World3::nearest(const Capsule3& body, double limit_m) const SOPT
 }
 
 bool World3::is_clear(const Capsule3& body, const ClearanceRule& rule) const SOPT_RT {
+  if (!std::isfinite((body.p0 + body.p1).sum() + body.radius_m)) return false;
   return for_each_near(grown(bounding_box(body), max_required_m(rule)),
                        [&](int i) { return !is_within(obstacle(i), body, required_m(i, rule)); });
+}
+
+Aabb3 World3::area_of(const PaddedLanes& lanes, const ClearanceRule& rule) const SOPT_RT {
+  const SphereLanes& s = lanes.spheres;
+  const Vec3 lower(min_of(s.x), min_of(s.y), min_of(s.z));
+  const Vec3 upper(-min_of(-s.x), -min_of(-s.y), -min_of(-s.z));
+  return grown({lower, upper}, max_required_m(rule) - min_of(-lanes.padded_radius_m));
+}
+
+unsigned World3::lanes_near(const SphereLanes& spheres, const ClearanceRule& rule) const SOPT_RT {
+  const PaddedLanes lanes(spheres);
+  const V8f infinity = splat8(std::numeric_limits<float>::infinity());
+  if (lane_mask8(lanes.padded_radius_m < infinity) != kAllLanes) return kAllLanes;
+  if (num_obstacles() <= kMaxScan) return lanes_.lanes_near(lanes, rule);
+  unsigned near = 0;
+  (void)for_each_near(lanes, kAllLanes, rule, [&](int /*i*/, unsigned found) {
+    near |= found;
+    return near != kAllLanes;
+  });
+  return near;
 }
 
 }  // namespace sopt

@@ -8,17 +8,14 @@
 #include "alloc/fixed_vector.h"
 #include "models/broad_phase3.h"
 #include "models/clearance3.h"
+#include "models/config.h"
 #include "models/margin.h"
 #include "models/shape3.h"
+#include "models/sphere_lanes3.h"
 #include "models/world_status.h"
 #include "rt/annotations.h"
 
 namespace sopt {
-
-struct World3Capacity {
-  int max_obstacles = 1024;
-  int max_hulls = 128;  // among them
-};
 
 class World3 {
  public:
@@ -39,7 +36,8 @@ class World3 {
                                     double margin_m = kDefaultMargin) noexcept;
   [[nodiscard]] WorldStatus try_add(const Hull3& hull, double margin_m = kDefaultMargin) noexcept;
 
-  // Builds the broad phase; call once after the last obstacle and before the first query.
+  // Builds the broad phase and what the lanes need; call once after the last obstacle and before
+  // the first query.
   void build() noexcept;
 
   [[nodiscard]] int num_obstacles() const SOPT_RT { return obstacles_.size(); }
@@ -58,11 +56,44 @@ class World3 {
     return std::max(rule.required_m(kDefaultMargin), rule.required_m(max_own_margin_m_));
   }
 
+  // The smallest one; of an empty world the rule's own.
+  [[nodiscard]] double min_required_m(const ClearanceRule& rule) const SOPT_RT {
+    const double least_m = rule.required_m(min_own_margin_m_);
+    return has_default_margin_ ? std::min(rule.required_m(kDefaultMargin), least_m) : least_m;
+  }
+
   // The nearest obstacle within `limit_m` of the body; kNoObstacle and limit_m if there is none.
   [[nodiscard]] NearestObstacle nearest(const Capsule3& body, double limit_m) const SOPT_RT;
 
-  // True when the body keeps the clearance that `rule` asks for from every obstacle. Exact.
+  // True when the body keeps the clearance that `rule` asks for from every obstacle. Exact. False
+  // for a body that is not finite.
   [[nodiscard]] bool is_clear(const Capsule3& body, const ClearanceRule& rule) const SOPT_RT;
+
+  // Bit i is set when sphere i may be closer to an obstacle than `rule` asks for (sphere_lanes3.h).
+  // If a sphere is not finite, all lanes are near.
+  [[nodiscard]] unsigned lanes_near(const SphereLanes& spheres,
+                                    const ClearanceRule& rule) const SOPT_RT;
+
+  // Calls visit(i_obstacle, lanes) -> bool for every obstacle with the lanes, of those in
+  // `among`, that are near it; stops when visit returns false. The spheres must be finite.
+  template <class Visit>
+  bool for_each_near(const PaddedLanes& lanes, unsigned among, const ClearanceRule& rule,
+                     Visit&& visit) const {
+    const auto look = [&](int i) {
+      const unsigned near = lanes_.lanes_near(i, lanes, rule) & among;
+      return near == 0 || visit(i, near);
+    };
+    if (num_obstacles() > kMaxScan) return for_each_near(area_of(lanes, rule), look);
+    for (int i = 0; i < num_obstacles(); ++i) {
+      if (!look(i)) return false;
+    }
+    return true;
+  }
+  // Of one obstacle.
+  [[nodiscard]] NestedNear lanes_near(int i_obstacle, const NestedLanes& lanes,
+                                      const ClearanceRule& rule) const SOPT_RT {
+    return lanes_.lanes_near(i_obstacle, lanes, rule);
+  }
 
   // See BroadPhase3::for_each_near; visits obstacle indices.
   template <class Visit>
@@ -71,6 +102,9 @@ class World3 {
   }
 
  private:
+  // Up to this many obstacles are all tested in lanes, more go through the broad phase.
+  static constexpr int kMaxScan = 16;
+
   struct Obstacle {
     Convex3 shape;
     double margin_m = kDefaultMargin;
@@ -80,12 +114,17 @@ class World3 {
   [[nodiscard]] WorldStatus try_add_shape(const Shape& shape, double margin_m) noexcept;
   [[nodiscard]] WorldStatus check_room(double margin_m) const noexcept;
   void add(const Convex3& shape, double margin_m) noexcept;
+  // Box around everything that can be near one of the spheres.
+  [[nodiscard]] Aabb3 area_of(const PaddedLanes& lanes, const ClearanceRule& rule) const SOPT_RT;
 
   FixedVector<Obstacle> obstacles_;
   FixedVector<Aabb3> boxes_;
   FixedVector<HullData> hulls_;
   BroadPhase3 broad_phase_;
+  ObstacleLanes3 lanes_;
   double max_own_margin_m_ = kDefaultMargin;
+  double min_own_margin_m_ = kDefaultMargin;  // of those that have one; kDefaultMargin: none has
+  bool has_default_margin_ = false;
 };
 
 }  // namespace sopt

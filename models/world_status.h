@@ -26,6 +26,8 @@ enum class WorldStatus : std::int8_t {
 inline constexpr int kBoundsObstacle = -1;
 // Stands for "no obstacle near".
 inline constexpr int kNoObstacle = -2;
+// Stands for the robot itself where an obstacle's index is expected.
+inline constexpr int kSelfObstacle = -3;
 
 // The nearest thing to a segment or capsule.
 struct NearestObstacle {

@@ -117,6 +117,31 @@ TEST_F(ArmTest, ReachOfAStretchedChainIsItsLength) {
   EXPECT_NEAR(arm_.displacement_bound(4, {0.1, 0.2, 0.0, 0.3}, 2), 0.3, 1e-9);
 }
 
+TEST_F(ArmTest, CapsulesNearTheirJointsMoveLessThanTheirLink) {
+  capsules_.push_back({4, {0, 0, 0}, {0.1, 0, 0}, 0.2});  // next to the last joint
+  ASSERT_EQ(reset(), ArmStatus::kOk);
+  const Vec4 turn(0.1, 0.2, 0.0, 0.3);
+  EXPECT_NEAR(arm_.capsule_displacement_bound(3, turn), arm_.displacement_bound(4, turn), 1e-12);
+  EXPECT_NEAR(arm_.capsule_displacement_bound(4, turn), 0.21 + 0.42 + 0.03, 1e-9);
+  EXPECT_NEAR(arm_.capsule_displacement_bound(4, turn, 3), 0.03, 1e-9);
+  oracle::Random random(5);
+  for (int i = 0; i < 2000; ++i) {
+    Vec4 a, b;
+    for (int j = 0; j < 4; ++j) {
+      a[j] = random.uniform(-2.0, 2.0);
+      b[j] = random.uniform(-2.0, 2.0);
+    }
+    ArmPose<4> from, to;
+    arm_.forward(a, from);
+    arm_.forward(b, to);
+    for (int k = 0; k < 5; ++k) {
+      const double bound_m = arm_.capsule_displacement_bound(k, (b - a).cwiseAbs());
+      ASSERT_LE((arm_.capsule_W(to, k).p0 - arm_.capsule_W(from, k).p0).norm(), bound_m + 1e-12);
+      ASSERT_LE((arm_.capsule_W(to, k).p1 - arm_.capsule_W(from, k).p1).norm(), bound_m + 1e-12);
+    }
+  }
+}
+
 TEST_F(ArmTest, SpheresContainAndAreSmall) {
   capsules_.push_back({4, {1, 0.3, 0}, {1, -0.3, 0}, 0.05});
   ASSERT_EQ(reset(), ArmStatus::kOk);
@@ -293,6 +318,25 @@ TEST(SinCosTest, AgreesWithTheStandardLibrary) {
     for (int k = 0; k < 4; ++k) {
       ASSERT_NEAR(sine[k], std::sin(angle[k]), 3e-16) << angle[k];
       ASSERT_NEAR(cosine[k], std::cos(angle[k]), 3e-16) << angle[k];
+    }
+  }
+}
+
+TEST(SinCosTest, OfEightFloatsIsWithinTwoRoundings) {
+  oracle::Random random(4);
+  for (int i = 0; i < 20000; ++i) {
+    const double reach = std::pow(10.0, random.uniform(-9.0, 5.0));
+    V4d low, high;
+    for (int k = 0; k < 4; ++k) {
+      low[k] = random.uniform(-reach, reach);
+      high[k] = i % 4 == 0 ? kPi / 4.0 * (4 * i + k) : random.uniform(-reach, reach);
+    }
+    V8f sine, cosine;
+    sin_cos8(low, high, sine, cosine);
+    for (int k = 0; k < 8; ++k) {
+      const double angle = k < 4 ? low[k] : high[k - 4];
+      ASSERT_NEAR(static_cast<double>(sine[k]), std::sin(angle), 0x1p-23) << angle;
+      ASSERT_NEAR(static_cast<double>(cosine[k]), std::cos(angle), 0x1p-23) << angle;
     }
   }
 }

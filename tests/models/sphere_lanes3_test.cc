@@ -43,10 +43,7 @@ class SphereLanesTest : public testing::Test {
   WorldStatus add(const Solid& solid, double margin_m = kDefaultMargin) {
     return add_to(world_, solid, margin_m);
   }
-  void build() {
-    world_.build();
-    lanes_.build(world_);
-  }
+  void build() { world_.build(); }
   [[nodiscard]] double slack_of(const Spheres& s, int lane, const ClearanceRule& rule) const {
     double slack = 1e300;
     for (int i = 0; i < world_.num_obstacles(); ++i) {
@@ -58,7 +55,7 @@ class SphereLanesTest : public testing::Test {
   }
   // Never clear when the exact answer is not; clear when the slack is more than the pad explains.
   void expect_strict(const Spheres& s, const ClearanceRule& rule, double pad_m) {
-    const unsigned near = lanes_.lanes_near(to_lanes(s), rule);
+    const unsigned near = world_.lanes_near(to_lanes(s), rule);
     for (int i = 0; i < kLanesFloat; ++i) {
       const double slack_m = slack_of(s, i, rule);
       const bool is_near = ((near >> i) & 1U) != 0;
@@ -68,15 +65,38 @@ class SphereLanesTest : public testing::Test {
       num_near_ += is_near ? 1 : 0;
       ++num_all_;
     }
+    for (int i = 0; i < world_.num_obstacles(); ++i) expect_strict_nested(i, s, rule);
+  }
+  // The wide sphere and the sphere are never clear when they are not, the inner one never near.
+  void expect_strict_nested(int i_obstacle, const Spheres& s, const ClearanceRule& rule) {
+    constexpr double kWider_m = 0.03;
+    const SphereLanes lanes = to_lanes(s);
+    const float radius_m = lanes.radius_m[0];
+    const float inner_m = 0.75F * radius_m;
+    const NestedNear near =
+        world_.lanes_near(i_obstacle,
+                          {lanes.x, lanes.y, lanes.z, lanes.radius_m + static_cast<float>(kWider_m),
+                           radius_m, inner_m},
+                          rule);
+    for (int i = 0; i < kLanesFloat; ++i) {
+      const Capsule3 point{s.center[i], s.center[i], 0.0};
+      const double gap_m = compute_clearance(world_.obstacle(i_obstacle), point).distance_m -
+                           world_.required_m(i_obstacle, rule);
+      const auto has = [i](unsigned bits) { return ((bits >> i) & 1U) != 0; };
+      ASSERT_TRUE(has(near.wide) || gap_m >= s.radius_m[i] + kWider_m) << gap_m;
+      ASSERT_TRUE(has(near.sphere) || gap_m >= static_cast<double>(radius_m)) << gap_m;
+      ASSERT_TRUE(!has(near.inner) || gap_m < static_cast<double>(inner_m)) << gap_m;
+      num_inner_ += has(near.inner) ? 1 : 0;
+    }
   }
 
-  MemoryBlock block_{World3::required_bytes(kCapacity) + LaneWorld3::required_bytes(kCapacity)};
+  MemoryBlock block_{World3::required_bytes(kCapacity)};
   Arena arena_{block_};
   World3 world_{arena_, kCapacity};
-  LaneWorld3 lanes_{arena_, kCapacity};
   int num_close_ = 0;
   int num_near_ = 0;
   int num_all_ = 0;
+  int num_inner_ = 0;
 };
 
 // Moves the spheres so that some just touch what they must keep from obstacle 0.
@@ -98,9 +118,9 @@ TEST_F(SphereLanesTest, SaysWhichSpheresAreNear) {
     s.center[i] = {i % 2 == 0 ? 1.6 : 1.8, 0, 0};  // 0.6 and 0.8 away
     s.radius_m[i] = 0.5;
   }
-  EXPECT_EQ(lanes_.lanes_near(to_lanes(s), {0.2}), 0x55U);
-  EXPECT_EQ(lanes_.lanes_near(to_lanes(s), {0.05}), 0U);
-  EXPECT_EQ(lanes_.lanes_near(to_lanes(s), {0.4}), kAll);
+  EXPECT_EQ(world_.lanes_near(to_lanes(s), {0.2}), 0x55U);
+  EXPECT_EQ(world_.lanes_near(to_lanes(s), {0.05}), 0U);
+  EXPECT_EQ(world_.lanes_near(to_lanes(s), {0.4}), kAll);
 }
 
 TEST_F(SphereLanesTest, KeepsEveryObstaclesOwnMargin) {
@@ -111,7 +131,7 @@ TEST_F(SphereLanesTest, KeepsEveryObstaclesOwnMargin) {
     s.center[i] = {0, 1.5 + 0.1 * i, 0};  // 0.4, 0.5, .. away
     s.radius_m[i] = 0.1;
   }
-  EXPECT_EQ(lanes_.lanes_near(to_lanes(s), {0.0}) & 0x5U, 0x1U);
+  EXPECT_EQ(world_.lanes_near(to_lanes(s), {0.0}) & 0x5U, 0x1U);
 }
 
 TEST_F(SphereLanesTest, OfAnEmptyWorldAreClear) {
@@ -119,7 +139,7 @@ TEST_F(SphereLanesTest, OfAnEmptyWorldAreClear) {
   Spheres s;
   for (int i = 0; i < kLanesFloat; ++i) s.radius_m[i] = 1.0;
   for (Vec3& center : s.center) center.setZero();
-  EXPECT_EQ(lanes_.lanes_near(to_lanes(s), {1.0}), 0U);
+  EXPECT_EQ(world_.lanes_near(to_lanes(s), {1.0}), 0U);
 }
 
 TEST_F(SphereLanesTest, ThatAreNotFiniteAreNear) {
@@ -131,9 +151,9 @@ TEST_F(SphereLanesTest, ThatAreNotFiniteAreNear) {
       s.center[i] = {50, 0, 0};
       s.radius_m[i] = 0.1;
     }
-    EXPECT_EQ(lanes_.lanes_near(to_lanes(s), {0.0}), 0U);
+    EXPECT_EQ(world_.lanes_near(to_lanes(s), {0.0}), 0U);
     s.center[3].y() = bad;
-    EXPECT_EQ(lanes_.lanes_near(to_lanes(s), {0.0}) & 0x8U, 0x8U);
+    EXPECT_EQ(world_.lanes_near(to_lanes(s), {0.0}) & 0x8U, 0x8U);
   }
 }
 
@@ -189,6 +209,7 @@ TEST_F(SphereLanesTest, OfManyObstaclesAreNeverClearWhenTheExactAnswerIsNot) {
   }
   EXPECT_GT(num_near_, num_all_ / 10);
   EXPECT_LT(num_near_, num_all_ * 9 / 10);
+  EXPECT_GT(num_inner_, num_all_ / 20);
 }
 
 TEST_F(SphereLanesTest, QueryWithoutTheHeap) {
@@ -200,7 +221,7 @@ TEST_F(SphereLanesTest, QueryWithoutTheHeap) {
   for (double& radius_m : s.radius_m) radius_m = 0.1;
   const SphereLanes lanes = to_lanes(s);
   RtGuard guard;
-  const unsigned near = lanes_.lanes_near(lanes, {0.2});
+  const unsigned near = world_.lanes_near(lanes, {0.2});
   guard.stop();
   EXPECT_EQ(near, kAll);
   EXPECT_EQ(guard.num_allocations(), 0);

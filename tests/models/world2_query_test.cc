@@ -14,6 +14,7 @@ namespace {
 using oracle::box_between;
 using oracle::TestWorld;
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 ClearanceRule rule_of(double margin_m, double rung = 1.0) {
@@ -117,6 +118,18 @@ TEST_F(WorldQuery, IsNotClearThroughAnObstacleWithoutRadiusAndMargin) {
   EXPECT_FALSE(world_.is_clear({5.0, 4.0}, {5.0, 4.0}, 0.0, rule_of(0.0)));
   EXPECT_FALSE(world_.is_clear({1.0, 6.0}, {3.0, 6.0}, 0.0, rule_of(0.0)));
   EXPECT_TRUE(world_.is_clear({1.0, 5.0}, {9.0, 5.0}, 0.0, rule_of(0.0)));  // slides along the face
+}
+
+TEST_F(WorldQuery, IsNeverClearOfWhatIsNotFinite) {
+  world_.build();
+  const Vec2 p(2.0, 4.0);
+  for (const double bad : {kNan, kInfinity, -kInfinity}) {
+    for (const Vec2& q : {Vec2(bad, 4.0), Vec2(4.0, bad), Vec2(bad, bad)}) {
+      EXPECT_FALSE(world_.is_clear(p, q, 0.5, rule_of(0.0)));
+      EXPECT_FALSE(world_.is_clear(q, p, 0.5, rule_of(0.0)));
+    }
+    EXPECT_FALSE(world_.is_clear(p, p, bad, rule_of(0.0)));
+  }
 }
 
 TEST_F(WorldQuery, KeepsAnObstaclesOwnMargin) {

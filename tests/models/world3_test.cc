@@ -125,6 +125,27 @@ TEST_F(SolidWorld, IsClearKeepsEveryObstaclesOwnMargin) {
   EXPECT_FALSE(world_.is_clear({{-2.3, 0, 0}, {0, 0, 0}, 0.25}, rule));
 }
 
+TEST_F(SolidWorld, IsNeverClearOfABodyThatIsNotFinite) {
+  const auto expect_blocked = [this](const Capsule3& body) {
+    for (const double bad : {kNan, kInfinity, -kInfinity}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        Capsule3 one = body;
+        one.p0[axis] = bad;
+        EXPECT_FALSE(world_.is_clear(one, {0.1}));
+        std::swap(one.p0, one.p1);
+        EXPECT_FALSE(world_.is_clear(one, {0.1}));
+      }
+      EXPECT_FALSE(world_.is_clear({body.p0, body.p1, bad}, {0.1}));
+    }
+  };
+  world_.build();
+  expect_blocked({{0, 0, 0}, {0, 0, 1}, 0.5});
+  ASSERT_EQ(world_.try_add(cube_at({5, 0, 0})), WorldStatus::kOk);
+  world_.build();
+  expect_blocked({{0, 0, 0}, {0, 0, 1}, 0.5});
+  expect_blocked({{0, 0, 0}, {0, 0, 0}, 0.0});
+}
+
 TEST_F(SolidWorld, AnswersAsAScanOfAllObstaclesDoes) {
   oracle::Random random(5);
   for (int i = 0; i < 60; ++i) {

@@ -134,13 +134,11 @@ void check_ccd(Random& random, const Case& c, double distance_m, CaseReport& rep
 // Spheres about where the obstacle's required clearance begins, against the exact answer.
 void check_lanes(Random& random, const Case& c, CaseReport& report) {
   constexpr World3Capacity kOne{1, 1};
-  const MemoryBlock block(World3::required_bytes(kOne) + LaneWorld3::required_bytes(kOne));
+  const MemoryBlock block(World3::required_bytes(kOne));
   Arena arena(block);
   World3 world(arena, kOne);
-  LaneWorld3 lanes(arena, kOne);
   if (add_to(world, c.a) != WorldStatus::kOk) return report.fail("the world refuses a solid");
   world.build();
-  lanes.build(world);
   const ClearanceRule rule{random.uniform(0.0, 0.1)};
   SphereLanes spheres;
   double slack_m[kLanesFloat];
@@ -158,7 +156,7 @@ void check_lanes(Random& random, const Case& c, CaseReport& report) {
     spheres.z[i] = static_cast<float>(z.z());
     spheres.radius_m[i] = radius_m;
   }
-  const unsigned near = lanes.lanes_near(spheres, rule);
+  const unsigned near = world.lanes_near(spheres, rule);
   for (int i = 0; i < kLanesFloat; ++i) {
     report.expect("no sphere that is near is called clear",
                   slack_m[i] >= 0.0 || ((near >> i) & 1U) != 0);

@@ -221,7 +221,8 @@ void check_report(const Case& c, const PlanResult<Point2>& result, CaseReport& r
   const IterationRecord& left = result.fell_back ? result.history.front() : result.history.back();
   report.expect_within("cost of the plan", std::abs(result.cost - left.cost), 1e-9);
   report.expect_within("length of the reference",
-                       std::abs(result.history.front().path_length - result.path->length()), 1e-9);
+                       std::abs(result.history.front().path_length - result.path->length(Point2{})),
+                       1e-9);
   report.expect("iterations within the limit",
                 result.iterations <= c.request.options.max_iterations);
   report.expect("margin is a rung", result.margin_m <= c.request.options.margin_m);

@@ -93,6 +93,13 @@ void plant(const Case& c, Trajectory<Point2>& trajectory, Point2& robot,
   switch (c.planted) {
     case ViolationKind::kNone:
     case ViolationKind::kCollision:
+    // Of arms alone.
+    case ViolationKind::kNotAtRest:
+    case ViolationKind::kPosition:
+    case ViolationKind::kVelocity:
+    case ViolationKind::kAcceleration:
+    case ViolationKind::kSelfCollision:
+    case ViolationKind::kSecondOpinion:
       break;
     case ViolationKind::kShape:
       (void)trajectory.inputs.try_resize(c.i_planted);
