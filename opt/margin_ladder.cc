@@ -3,11 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/arm_clearance.h"
+
 namespace sopt {
 namespace {
 
 // A rung never asks for less than the hard clearance plus what the rows' tolerance may lose.
 constexpr double kFloorGuard_m = 1e-8;
+
+double end_clearance_m(const Point2& robot, const World2& world, const Vec2& end,
+                       double limit_m) noexcept {
+  return robot.clearance(world, end, limit_m).distance_m;
+}
+
+template <int N>
+double end_clearance_m(const Arm<N>& robot, const World3& world, const typename Arm<N>::Config& end,
+                       double limit_m) noexcept {
+  ArmPose<N> pose;
+  robot.forward(end, pose);
+  return nearest_obstacle(robot, world, pose, limit_m).clearance.distance_m;
+}
 
 }  // namespace
 
@@ -22,7 +37,7 @@ MarginLadder make_margin_ladder(const Robot& robot, const PlanRequest<Robot>& re
     profile.step_length = step_length;
     const double wanted_m = request.world->max_required_m(profile.rule);
     const auto relax = [&](const typename Robot::Config& end, double& cap_m, int& num_steps) {
-      const double clearance_m = robot.clearance(*request.world, end, wanted_m).distance_m;
+      const double clearance_m = end_clearance_m(robot, *request.world, end, wanted_m);
       if (clearance_m >= wanted_m) return;
       cap_m = options.min_clearance_m +
               MarginProfile::kEndShare * (clearance_m - options.min_clearance_m);
@@ -37,6 +52,16 @@ MarginLadder make_margin_ladder(const Robot& robot, const PlanRequest<Robot>& re
 }
 
 template MarginLadder make_margin_ladder(const Point2&, const PlanRequest<Point2>&, double,
+                                         int) SOPT_RT;
+template MarginLadder make_margin_ladder(const Arm<4>&, const PlanRequest<Arm<4>>&, double,
+                                         int) SOPT_RT;
+template MarginLadder make_margin_ladder(const Arm<5>&, const PlanRequest<Arm<5>>&, double,
+                                         int) SOPT_RT;
+template MarginLadder make_margin_ladder(const Arm<6>&, const PlanRequest<Arm<6>>&, double,
+                                         int) SOPT_RT;
+template MarginLadder make_margin_ladder(const Arm<7>&, const PlanRequest<Arm<7>>&, double,
+                                         int) SOPT_RT;
+template MarginLadder make_margin_ladder(const Arm<8>&, const PlanRequest<Arm<8>>&, double,
                                          int) SOPT_RT;
 
 }  // namespace sopt

@@ -3,6 +3,7 @@
 // is itself closer.
 #pragma once
 
+#include "models/arm.h"
 #include "models/margin.h"
 #include "models/point2.h"
 #include "models/trajectory.h"
@@ -17,6 +18,16 @@ template <class Robot>
                                               double step_length, int max_horizon) SOPT_RT;
 
 extern template MarginLadder make_margin_ladder(const Point2&, const PlanRequest<Point2>&, double,
+                                                int) SOPT_RT;
+extern template MarginLadder make_margin_ladder(const Arm<4>&, const PlanRequest<Arm<4>>&, double,
+                                                int) SOPT_RT;
+extern template MarginLadder make_margin_ladder(const Arm<5>&, const PlanRequest<Arm<5>>&, double,
+                                                int) SOPT_RT;
+extern template MarginLadder make_margin_ladder(const Arm<6>&, const PlanRequest<Arm<6>>&, double,
+                                                int) SOPT_RT;
+extern template MarginLadder make_margin_ladder(const Arm<7>&, const PlanRequest<Arm<7>>&, double,
+                                                int) SOPT_RT;
+extern template MarginLadder make_margin_ladder(const Arm<8>&, const PlanRequest<Arm<8>>&, double,
                                                 int) SOPT_RT;
 
 }  // namespace sopt

@@ -23,7 +23,7 @@ class MotionBoxes {
     while (num_leaves_ < num_runs) num_leaves_ *= 2;
     for (int i = 0; i < num_leaves_; ++i) {
       Aabb2& box = boxes_[static_cast<std::size_t>(num_leaves_ + i)];
-      box = kNothing;
+      box = {Vec2::Constant(kInfinity), Vec2::Constant(-kInfinity)};
       for (int t = i * run_; t <= std::min(horizon_, (i + 1) * run_) && i < num_runs; ++t) {
         box.lower = box.lower.cwiseMin(trajectory.states[t]);
         box.upper = box.upper.cwiseMax(trajectory.states[t]);
@@ -62,7 +62,6 @@ class MotionBoxes {
   static constexpr int kMaxRuns = 256;
   static constexpr int kMinRun = 16;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  inline static const Aabb2 kNothing{Vec2::Constant(kInfinity), Vec2::Constant(-kInfinity)};
 
   int horizon_;
   int run_;

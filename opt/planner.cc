@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "models/arm_clearance.h"
 #include "opt/margin_ladder.h"
 #include "opt/reference.h"
 #include "opt/request_rules.h"
@@ -14,7 +15,10 @@ namespace sopt {
 namespace {
 
 // Work bounds of verify, from docs/RESULTS.md, generous: what the optimiser leaves of the deadline.
-constexpr double kVerifyPerStep_s = 1e-6;
+template <class Robot>
+constexpr double kVerifyPerStep_s = 1e-5;
+template <>
+constexpr double kVerifyPerStep_s<Point2> = 1e-6;
 constexpr double kVerifyPerBox_s = 1e-8;  // per obstacle and run of 16 steps
 
 // A path has to be this much shorter, relative, to be worth optimising: below it is the same way.
@@ -23,17 +27,68 @@ constexpr int kMaxImproveRounds = 1 << 20;
 
 // Twice one verification: a result that is refused is followed by plan 0, an improvement is
 // verified before and after it takes its place.
+template <class Robot>
 double verify_reserve_s(int horizon, int num_obstacles) noexcept {
   const double runs = horizon / 16.0 + 1.0;
-  return 2.0 * (kVerifyPerStep_s * horizon + kVerifyPerBox_s * runs * num_obstacles);
+  return 2.0 * (kVerifyPerStep_s<Robot> * horizon + kVerifyPerBox_s * runs * num_obstacles);
 }
 
 template <class Robot>
 bool fail(PlanResult<Robot>& result, PlanStatus status, PlanStage stage, const char* reason,
           double amount = 0.0, int i_obstacle = kNoObstacle) noexcept {
   result.status = status;
-  result.failure = {stage, reason, 0, i_obstacle, 0.0, amount};
+  result.failure = PlanFailure();
+  result.failure.stage = stage;
+  result.failure.reason = reason;
+  result.failure.i_obstacle = i_obstacle;
+  result.failure.amount = amount;
   return false;
+}
+
+// What is wrong with an end of the request; no reason when nothing is.
+PlanFailure find_bad_end(const Point2& robot, const World2& world, const Vec2& end, bool is_start,
+                         double min_clearance_m) noexcept {
+  PlanFailure failure;
+  failure.reason = nullptr;
+  const NearestObstacle nearest = robot.clearance(world, end, min_clearance_m);
+  if (nearest.distance_m >= min_clearance_m) return failure;
+  failure.reason =
+      is_start ? "start is closer than min_clearance" : "goal is closer than min_clearance";
+  failure.i_obstacle = nearest.i_obstacle;
+  failure.amount = nearest.distance_m;
+  return failure;
+}
+
+template <int N>
+PlanFailure find_bad_end(const Arm<N>& robot, const World3& world,
+                         const typename Arm<N>::Config& end, bool is_start,
+                         double min_clearance_m) noexcept {
+  PlanFailure failure;
+  failure.reason = nullptr;
+  const int i_joint = robot.joint_outside_limits(end);
+  if (i_joint != kNoJoint) {
+    failure.reason =
+        is_start ? "a joint's start is outside its limits" : "a joint's goal is outside its limits";
+    failure.i_joint = i_joint;
+    failure.amount = end[i_joint];
+    failure.lower = robot.lower()[i_joint];
+    failure.upper = robot.upper()[i_joint];
+    return failure;
+  }
+  const ArmContact contact = robot.clearance(world, end, min_clearance_m);
+  const bool is_self = contact.i_obstacle == kSelfObstacle;
+  if (!is_self && contact.clearance.distance_m >= min_clearance_m) return failure;
+  if (is_self) {
+    failure.reason = is_start ? "start is in self-collision" : "goal is in self-collision";
+  } else {
+    failure.reason =
+        is_start ? "start is closer than min_clearance" : "goal is closer than min_clearance";
+  }
+  failure.i_link = contact.i_link;
+  failure.i_other_link = contact.i_other_link;
+  failure.i_obstacle = contact.i_obstacle;
+  failure.amount = contact.clearance.distance_m;
+  return failure;
 }
 
 const char* reason_of(ViolationKind kind) noexcept {
@@ -54,6 +109,18 @@ const char* reason_of(ViolationKind kind) noexcept {
       return "speed limit exceeded";
     case ViolationKind::kCollision:
       return "clearance below min_clearance";
+    case ViolationKind::kNotAtRest:
+      return "trajectory moves at its start or goal";
+    case ViolationKind::kPosition:
+      return "joint limit exceeded";
+    case ViolationKind::kVelocity:
+      return "velocity limit exceeded";
+    case ViolationKind::kAcceleration:
+      return "acceleration limit exceeded";
+    case ViolationKind::kSelfCollision:
+      return "links too close to each other";
+    case ViolationKind::kSecondOpinion:
+      return "the second collision checker found contact";
   }
   return "unknown violation";
 }
@@ -156,7 +223,7 @@ void Planner<Robot>::plan_into(Slot& slot, Call& call, PlanResult<Robot>& result
   if (!make_plan_0(call, slot.trajectory, result)) return;
   result.times.reference_ns = lap_ns();
   const double reserve_s =
-      verify_reserve_s(slot.trajectory.horizon(), request.world->num_obstacles());
+      verify_reserve_s<Robot>(slot.trajectory.horizon(), request.world->num_obstacles());
   const OptimizerResult<Robot> optimized =
       optimize(call, call.deadline.earlier_by(reserve_s), slot.trajectory);
   report_optimizer(optimized, result);
@@ -213,7 +280,7 @@ void Planner<Robot>::improve(Slot& slot, Call& call, PlanResult<Robot>& result) 
   improvements_.clear();
   record_improvement(call, result);
   const double reserve_s =
-      verify_reserve_s(slot.trajectory.horizon(), request.world->num_obstacles());
+      verify_reserve_s<Robot>(slot.trajectory.horizon(), request.world->num_obstacles());
   const Deadline until =
       Deadline::earliest(call.deadline.earlier_by(reserve_s),
                          Deadline(clock_, clock_.now_ns(), request.options.improve_s));
@@ -226,11 +293,12 @@ void Planner<Robot>::improve(Slot& slot, Call& call, PlanResult<Robot>& result) 
                               call.i_rung, i_round, known_path_, until);
     result.sampler_counts.edges += sampled.counts.edges;
     result.sampler_counts.rounds += sampled.counts.rounds;
-    const double worthwhile = (1.0 - kWorthwhileGain) * known_path_.length();
-    if (sampled.path == nullptr || sampled.path->length() > worthwhile) continue;
+    const double worthwhile = (1.0 - kWorthwhileGain) * known_path_.length(robot_);
+    if (sampled.path == nullptr || sampled.path->length(robot_) > worthwhile) continue;
     if (until.expired()) break;
     (void)known_path_.vertices.try_assign(sampled.path->vertices.span());
-    if (!make_reference(known_path_, call.step_length, request.options.dt_s, candidate_)) continue;
+    if (!make_reference(robot_, known_path_, call.step_length, request.options.dt_s, candidate_))
+      continue;
     const OptimizerResult<Robot> optimized = optimize(call, until, candidate_);
     if (optimized.history.empty() || optimized.history.back().path_length >= result.path_length) {
       continue;
@@ -277,13 +345,13 @@ bool Planner<Robot>::check_request(const PlanRequest<Robot>& request,
 template <class Robot>
 bool Planner<Robot>::check_end(const PlanRequest<Robot>& request, bool is_start,
                                PlanResult<Robot>& result) const SOPT_RT {
-  const NearestObstacle nearest = robot_.clearance(
-      *request.world, is_start ? request.start : request.goal, request.options.min_clearance_m);
-  if (nearest.distance_m >= request.options.min_clearance_m) return true;
-  const PlanStatus status = is_start ? PlanStatus::kBadStart : PlanStatus::kBadGoal;
-  const char* const reason =
-      is_start ? "start is closer than min_clearance" : "goal is closer than min_clearance";
-  return fail(result, status, PlanStage::kRequest, reason, nearest.distance_m, nearest.i_obstacle);
+  const typename Robot::Config& end = is_start ? request.start : request.goal;
+  const PlanFailure failure =
+      find_bad_end(robot_, *request.world, end, is_start, request.options.min_clearance_m);
+  if (failure.reason == nullptr) return true;
+  result.status = is_start ? PlanStatus::kBadStart : PlanStatus::kBadGoal;
+  result.failure = failure;
+  return false;
 }
 
 template <class Robot>
@@ -298,6 +366,7 @@ bool Planner<Robot>::sample(Call& call, PlanResult<Robot>& result) SOPT_RT {
   result.sampler_path_length = sampled.raw_length;
   result.sampler_counts = sampled.counts;
   result.times.sample_ns = sampled.sample_ns;
+  result.times.first_path_ns = sampled.first_path_ns;
   result.times.shortcut_ns = sampled.shortcut_ns;
   result.margin_m = kMarginRungs[static_cast<std::size_t>(call.i_rung)] * request.options.margin_m;
   switch (sampled.status) {
@@ -320,12 +389,13 @@ bool Planner<Robot>::sample(Call& call, PlanResult<Robot>& result) SOPT_RT {
 template <class Robot>
 bool Planner<Robot>::make_plan_0(const Call& call, Trajectory<Robot>& trajectory,
                                  PlanResult<Robot>& result) SOPT_RT {
-  if (make_reference(*result.path, call.step_length, call.request.options.dt_s, trajectory)) {
+  if (make_reference(robot_, *result.path, call.step_length, call.request.options.dt_s,
+                     trajectory)) {
     return true;
   }
   return fail(result, PlanStatus::kCapacity, PlanStage::kReference,
               "the trajectory needs more steps than max_horizon",
-              std::ceil(result.path->length() / call.step_length));
+              std::ceil(result.path->length(robot_) / call.step_length));
 }
 
 template <class Robot>
@@ -352,9 +422,12 @@ bool Planner<Robot>::try_verify(const PlanRequest<Robot>& request, Slot& slot,
              {request.start, request.goal, request.world, request.options.min_clearance_m});
   if (!verified.plan) {
     const Violation& v = verified.violation;
-    result.status = PlanStatus::kNoPath;
-    result.failure = {
-        PlanStage::kVerify, reason_of(v.kind), v.i_link, v.i_obstacle, v.t_s, v.amount};
+    fail(result, PlanStatus::kNoPath, PlanStage::kVerify, reason_of(v.kind), v.amount,
+         v.i_obstacle);
+    result.failure.i_link = v.i_link;
+    result.failure.i_other_link = v.i_other_link;
+    result.failure.i_joint = v.i_joint;
+    result.failure.t_s = v.t_s;
     return false;
   }
   result.plan.plan_ = verified.plan;
@@ -364,6 +437,16 @@ bool Planner<Robot>::try_verify(const PlanRequest<Robot>& request, Slot& slot,
 }
 
 template class PlanLease<Point2>;
+template class PlanLease<Arm<4>>;
+template class PlanLease<Arm<5>>;
+template class PlanLease<Arm<6>>;
+template class PlanLease<Arm<7>>;
+template class PlanLease<Arm<8>>;
 template class Planner<Point2>;
+template class Planner<Arm<4>>;
+template class Planner<Arm<5>>;
+template class Planner<Arm<6>>;
+template class Planner<Arm<7>>;
+template class Planner<Arm<8>>;
 
 }  // namespace sopt

@@ -27,7 +27,7 @@ enum class PlanStatus : std::int8_t {
   kDeadlineFeasible = 1,  // verified, but the deadline cut the optimisation short
   kNoPath = -1,           // the sampling budget ended without a path, or no plan passed verify
   kDeadline = -2,         // the deadline passed before there was a verified plan
-  kBadStart = -3,         // start outside the bounds or too close to an obstacle
+  kBadStart = -3,         // start outside bounds or limits, too close to an obstacle or to itself
   kBadGoal = -4,          // likewise the goal
   kCapacity = -5,         // the path needs more steps or vertices than the settings allow
   kNoSlot = -6,           // all kNumPlanSlots plans are still held
@@ -44,10 +44,14 @@ struct PlanFailure {
   int i_obstacle = kNoObstacle;  // kBoundsObstacle: the bounds
   double t_s = 0.0;              // along the rejected plan, when there was one
   double amount = 0.0;           // of the violation, or the offending value
+  int i_other_link = kNoLink;    // with kSelfObstacle: the link that i_link is too close to
+  int i_joint = kNoJoint;        // whose position `amount` is not within the limits below
+  double lower = 0.0, upper = 0.0;
 };
 
 struct StageTimes {
   std::int64_t sample_ns = 0;
+  std::int64_t first_path_ns = 0;  // of that, until there was a path, not yet shortened
   std::int64_t shortcut_ns = 0;
   std::int64_t reference_ns = 0;
   std::int64_t optimize_ns = 0;
@@ -187,6 +191,16 @@ class Planner {
 };
 
 extern template class PlanLease<Point2>;
+extern template class PlanLease<Arm<4>>;
+extern template class PlanLease<Arm<5>>;
+extern template class PlanLease<Arm<6>>;
+extern template class PlanLease<Arm<7>>;
+extern template class PlanLease<Arm<8>>;
 extern template class Planner<Point2>;
+extern template class Planner<Arm<4>>;
+extern template class Planner<Arm<5>>;
+extern template class Planner<Arm<6>>;
+extern template class Planner<Arm<7>>;
+extern template class Planner<Arm<8>>;
 
 }  // namespace sopt

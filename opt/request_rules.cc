@@ -52,5 +52,10 @@ BrokenRule find_broken_rule(const PlanRequest<Robot>& request,
 }
 
 template BrokenRule find_broken_rule(const PlanRequest<Point2>&, const PlannerSettings&) SOPT_RT;
+template BrokenRule find_broken_rule(const PlanRequest<Arm<4>>&, const PlannerSettings&) SOPT_RT;
+template BrokenRule find_broken_rule(const PlanRequest<Arm<5>>&, const PlannerSettings&) SOPT_RT;
+template BrokenRule find_broken_rule(const PlanRequest<Arm<6>>&, const PlannerSettings&) SOPT_RT;
+template BrokenRule find_broken_rule(const PlanRequest<Arm<7>>&, const PlannerSettings&) SOPT_RT;
+template BrokenRule find_broken_rule(const PlanRequest<Arm<8>>&, const PlannerSettings&) SOPT_RT;
 
 }  // namespace sopt

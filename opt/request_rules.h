@@ -1,6 +1,7 @@
 // What a request must be before anything is planned, one rule a line.
 #pragma once
 
+#include "models/arm.h"
 #include "models/config.h"
 #include "models/point2.h"
 #include "models/trajectory.h"
@@ -19,6 +20,16 @@ template <class Robot>
                                           const PlannerSettings& settings) SOPT_RT;
 
 extern template BrokenRule find_broken_rule(const PlanRequest<Point2>&,
+                                            const PlannerSettings&) SOPT_RT;
+extern template BrokenRule find_broken_rule(const PlanRequest<Arm<4>>&,
+                                            const PlannerSettings&) SOPT_RT;
+extern template BrokenRule find_broken_rule(const PlanRequest<Arm<5>>&,
+                                            const PlannerSettings&) SOPT_RT;
+extern template BrokenRule find_broken_rule(const PlanRequest<Arm<6>>&,
+                                            const PlannerSettings&) SOPT_RT;
+extern template BrokenRule find_broken_rule(const PlanRequest<Arm<7>>&,
+                                            const PlannerSettings&) SOPT_RT;
+extern template BrokenRule find_broken_rule(const PlanRequest<Arm<8>>&,
                                             const PlannerSettings&) SOPT_RT;
 
 }  // namespace sopt

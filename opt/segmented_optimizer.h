@@ -1,22 +1,27 @@
 // sOpt [Leu22, Alg. 1 l.6-20]: sweeps over windows, odd and even in turn, until the cost stops
-// falling. Cost: f = sum |z(t+1) - z(t)|^2 / ds, which equals path length at uniform speed. With
-// both ends of every window fixed the windows' costs add up to f, so sweeps are block-coordinate
-// descent: f never rises, and every iterate is as feasible as plan 0 (docs/algorithm.md).
-// Stops after max_iterations, when two sweeps in a row (both parities) gain at most tol_step H, or
-// at the deadline; the trajectory is whole at every window.
+// falling. Cost f: opt/step_measure.h; it equals path length at uniform speed. With both ends of
+// every window fixed the windows' costs add up to f, so sweeps are block-coordinate descent: f
+// never rises, and every iterate is as feasible as plan 0 (docs/algorithm.md; between the waypoints
+// of an arm only min_clearance is kept). Stops after max_iterations, when two sweeps in a row
+// (both parities) gain at most tol_step H, or at the deadline; the trajectory is whole at every
+// window. A single window is swept every time, and one such sweep is enough.
 // Merging [Leu22, eq. 3]: neighbours that together gained at most 2 tol_step H / N become one
 // window. Deviation: the printed epsilon is read per step; with epsilon = 1e-3 H as in the paper's
 // stopping rule every window would merge in the first sweep. Windows that failed never merge; a
-// window that failed is cut in two, for good.
+// window that failed is cut in two, for good. Arms merge eagerly, and sweeps go on while they do:
+// their references stop at every vertex, and what is left of that is longer than windows and falls
+// off slowly.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
+#include "models/arm.h"
 #include "models/config.h"
 #include "models/margin.h"
 #include "models/point2.h"
 #include "models/trajectory.h"
+#include "opt/arm_window.h"
 #include "opt/splits.h"
 #include "opt/window_optimizer.h"
 #include "rt/annotations.h"
@@ -82,8 +87,8 @@ struct SweepSummary {
 [[nodiscard]] int choose_num_segments(const PlanOptions& options, int horizon,
                                       int max_window) SOPT_RT;
 
-// How far waypoints may move, which is how far away obstacles get rows: in the first sweep, and in
-// the one after `summary`.
+// How far waypoints of the point robot may move, which is how far away obstacles get rows: in the
+// first sweep, and in the one after `summary`.
 [[nodiscard]] double first_trust_m(double ds_m) SOPT_RT;
 [[nodiscard]] double next_trust_m(const SweepSummary& summary, double trust_m, double ds_m) SOPT_RT;
 
@@ -93,7 +98,8 @@ class SegmentedOptimizer {
   SegmentedOptimizer(Arena& arena, const PlannerSettings& settings, Executor& executor,
                      Clock clock) noexcept;
 
-  // Improves trajectory.states in place; inputs and dt are the caller's. At least 2 steps.
+  // Improves trajectory.states in place; inputs and dt are the caller's. At least 2 steps. An arm's
+  // states keep its limits and their dynamics.
   [[nodiscard]] OptimizerResult<Robot> optimize(const OptimizerProblem<Robot>& problem,
                                                 Trajectory<Robot>& trajectory,
                                                 const Deadline& deadline) SOPT_RT;
@@ -103,8 +109,8 @@ class SegmentedOptimizer {
                                    OptimizerCounts& counts) SOPT_RT;
   void adapt_windows(MergeRule merge, double max_merge_gain, int max_window) SOPT_RT;
   [[nodiscard]] bool try_merge(MergeRule merge, int i_split, int max_window) SOPT_RT;
-  void record(int iteration, int num_segments, double ds_m, const Trajectory<Robot>& trajectory,
-              std::int64_t begin_ns) SOPT_RT;
+  void record(int iteration, int num_segments, const OptimizerProblem<Robot>& problem,
+              const Trajectory<Robot>& trajectory, std::int64_t begin_ns) SOPT_RT;
 
   PlannerSettings settings_;
   Executor* executor_;
@@ -117,5 +123,10 @@ class SegmentedOptimizer {
 };
 
 extern template class SegmentedOptimizer<Point2>;
+extern template class SegmentedOptimizer<Arm<4>>;
+extern template class SegmentedOptimizer<Arm<5>>;
+extern template class SegmentedOptimizer<Arm<6>>;
+extern template class SegmentedOptimizer<Arm<7>>;
+extern template class SegmentedOptimizer<Arm<8>>;
 
 }  // namespace sopt

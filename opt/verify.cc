@@ -241,7 +241,7 @@ class Check {
               int i_obstacle = kNoObstacle) noexcept {
     const double t_s = (step + share) * trajectory_.dt_s;
     const bool is_first = violation_.kind == ViolationKind::kNone || t_s < violation_.t_s;
-    if (is_first) violation_ = {kind, step, t_s, 0, i_obstacle, amount};
+    if (is_first) violation_ = {kind, step, t_s, 0, i_obstacle, amount, kNoLink, kNoJoint};
   }
 
   const Point2& robot_;
@@ -253,24 +253,16 @@ class Check {
 
 }  // namespace
 
-template <class Robot>
-VerifyResult<Robot> verify(const Robot& robot, const Trajectory<Robot>& trajectory,
-                           const VerifyProblem<Robot>& problem) SOPT_RT {
-  VerifyResult<Robot> result;
+Violation find_violation(const Point2& robot, const Trajectory<Point2>& trajectory,
+                         const VerifyProblem<Point2>& problem, Certificate& certificate) SOPT_RT {
   Check check(robot, trajectory, problem);
   if (check.shape() && check.finite()) {
     check.ends();
     check.motion();
     check.clearance();
   }
-  result.violation = check.violation();
-  if (result.violation.kind == ViolationKind::kNone) {
-    result.plan = VerifiedPlan<Robot>(trajectory, check.certificate());
-  }
-  return result;
+  certificate = check.certificate();
+  return check.violation();
 }
-
-template VerifyResult<Point2> verify(const Point2&, const Trajectory<Point2>&,
-                                     const VerifyProblem<Point2>&) SOPT_RT;
 
 }  // namespace sopt

@@ -42,7 +42,8 @@ double max_displacement(const PointRows& rows, const Vec2* reference) noexcept {
 }  // namespace
 
 // A waypoint of the plane has at most two linearly independent active rows.
-WindowOptimizer<Point2>::WindowOptimizer(Arena& arena, const PlannerSettings& settings) noexcept
+WindowOptimizer<Point2>::WindowOptimizer(Arena& arena, const PlannerSettings& settings,
+                                         const Shared& /*shared*/) noexcept
     : max_window_(settings.max_window),
       rows_(arena, settings.max_window, settings.rows_per_window),
       qp_(arena, 2 * settings.max_window),

@@ -7,67 +7,32 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include "models/config.h"
-#include "models/margin.h"
 #include "models/point2.h"
 #include "opt/dense_window.h"
 #include "opt/obstacle_rows.h"
 #include "opt/qp/active_set_qp.h"
 #include "opt/qp/point_rows.h"
 #include "opt/splits.h"
+#include "opt/sweep_problem.h"
 #include "rt/annotations.h"
 #include "rt/deadline.h"
 
 namespace sopt {
 
-enum class WindowStatus : std::int8_t {
-  kMoved = 0,      // a step was taken
-  kConverged = 1,  // the solution is where the reference is already
-  kNotRun = -1,    // default, or the deadline had passed
-  kTooShort = -2,  // fewer than 2 steps: nothing to move
-  kNoRows = -3,    // the window or its rows do not fit, even with the smallest trust radius
-  kQpFailed = -4,  // the QP has no solution or was interrupted
-  kRejected = -5,  // no step passed the check
-};
-
-struct WindowResult {
-  WindowStatus status = WindowStatus::kNotRun;
-  QpStatus qp_status = QpStatus::kNotSolved;
-  double cost_before = 0.0;  // sum |dz|^2 / ds over the window
-  double cost_after = 0.0;
-  double displacement_m = 0.0;  // largest move of a waypoint
-  bool was_shortened = false;   // the step ended at the trust radius, not at the solution
-  bool has_active_rows = false;
-  std::int64_t clearance_queries = 0;
-  std::int64_t qp_solves = 0;
-  std::int64_t qp_steps = 0;
-};
-
-template <class Robot>
-class WindowOptimizer;
-
-// What all windows of a sweep have in common.
-template <class Robot>
-struct SweepProblem {
-  const Robot* robot = nullptr;
-  const typename Robot::World* world = nullptr;
-  MarginProfile profile;
-  double trust_m = 0.0;                     // how far a waypoint may move
-  double ds_m = 0.0;                        // nominal step length, the cost's scale
-  std::span<typename Robot::State> states;  // the whole trajectory
-  RowMode rows = RowMode::kEdge;
-  WindowSolver solver = WindowSolver::kClosedForm;
-  bool accept = true;                 // check steps before they are taken
-  bool linearize_about_rest = false;  // u = 0: rows think that the window stands at its first point
-};
-
 template <>
 class WindowOptimizer<Point2> {
  public:
+  // Workers share nothing.
+  struct Shared {
+    Shared() noexcept = default;
+    Shared(Arena& /*arena*/, const PlannerSettings& /*settings*/) noexcept {}
+  };
+
   WindowOptimizer() noexcept = default;
-  WindowOptimizer(Arena& arena, const PlannerSettings& settings) noexcept;
+  WindowOptimizer(Arena& arena, const PlannerSettings& settings,
+                  const Shared& shared = Shared()) noexcept;
 
   // Optimises states(window.first, window.last), both exclusive, in place.
   [[nodiscard]] WindowResult optimize(const SweepProblem<Point2>& problem, const Window& window,

@@ -31,12 +31,12 @@ class MotionChecker {
     if (a_reach == 0.0 && b_reach == 0.0) {
       return robot_->motion_is_clear(*world_, profile_->rule, a, b);
     }
-    const double length = Robot::path_distance(a, b);
+    const double length = robot_->path_distance(a, b);
     if (length == 0.0) return robot_->motion_is_clear(*world_, loosest(a_end, b_end), a, b);
     const double leave = std::min(1.0, a_reach / length);
     const double arrive = std::max(leave, 1.0 - b_reach / length);
-    const Config left = Robot::interpolate(a, b, leave);
-    const Config back = arrive < 1.0 ? Robot::interpolate(a, b, arrive) : b;
+    const Config left = robot_->interpolate(a, b, leave);
+    const Config back = arrive < 1.0 ? robot_->interpolate(a, b, arrive) : b;
     return (leave == 0.0 || robot_->motion_is_clear(*world_, rule_at(a_end), a, left)) &&
            (arrive <= leave || robot_->motion_is_clear(*world_, profile_->rule, left, back)) &&
            (arrive == 1.0 || robot_->motion_is_clear(*world_, rule_at(b_end), back, b));
@@ -50,6 +50,7 @@ class MotionChecker {
     return robot_->clearance(*world_, q, required_m + limit_m).distance_m - required_m;
   }
 
+  [[nodiscard]] const Robot& robot() const SOPT_RT { return *robot_; }
   [[nodiscard]] auto sampling_box() const SOPT_RT {
     return robot_->sampling_box(*world_, profile_->rule);
   }

@@ -9,7 +9,8 @@ PathGraph<Robot>::PathGraph(Arena& arena) noexcept
     : nodes_(arena, kMaxGraphNodes), queue_(arena, kMaxGraphNodes * kMaxGraphNodes) {}
 
 template <class Robot>
-void PathGraph<Robot>::clear() SOPT_RT {
+void PathGraph<Robot>::reset(const Robot& robot) SOPT_RT {
+  robot_ = &robot;
   nodes_.clear();
 }
 
@@ -19,7 +20,7 @@ void PathGraph<Robot>::add(const Path<Robot>& path) SOPT_RT {
   const auto new_node = [&](const Config& config) {
     Node node;
     node.config = config;
-    node.to_goal = Robot::path_distance(config, v.back());
+    node.to_goal = robot_->path_distance(config, v.back());
     return node;
   };
   if (nodes_.empty()) {
@@ -54,13 +55,13 @@ void PathGraph<Robot>::close(int i, int parent, double length_limit) SOPT_RT {
   node.parent = parent;
   if (parent >= 0) {
     node.from_start =
-        nodes_[parent].from_start + Robot::path_distance(nodes_[parent].config, node.config);
+        nodes_[parent].from_start + robot_->path_distance(nodes_[parent].config, node.config);
   }
   for (int k = 0; k < nodes_.size(); ++k) {
     const Node& next = nodes_[k];
     if (next.is_closed) continue;
     const double through =
-        node.from_start + Robot::path_distance(node.config, next.config) + next.to_goal;
+        node.from_start + robot_->path_distance(node.config, next.config) + next.to_goal;
     if (through >= length_limit || !queue_.try_push_back({through, i, k})) continue;
     std::push_heap(queue_.begin(), queue_.end(), is_later);
   }
@@ -94,9 +95,15 @@ bool PathGraph<Robot>::store(Path<Robot>& out) const SOPT_RT {
   for (int i = kGoal; i >= 0; i = nodes_[i].parent) ++num_vertices;
   if (!out.vertices.try_resize(num_vertices)) return false;
   for (int i = kGoal; i >= 0; i = nodes_[i].parent) out.vertices[--num_vertices] = nodes_[i].config;
+  out.unwrap(*robot_);
   return true;
 }
 
 template class PathGraph<Point2>;
+template class PathGraph<Arm<4>>;
+template class PathGraph<Arm<5>>;
+template class PathGraph<Arm<6>>;
+template class PathGraph<Arm<7>>;
+template class PathGraph<Arm<8>>;
 
 }  // namespace sopt

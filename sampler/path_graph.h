@@ -8,6 +8,7 @@
 // queue entries.
 #pragma once
 
+#include "models/arm.h"
 #include "models/point2.h"
 #include "models/trajectory.h"
 #include "rt/deadline.h"
@@ -25,7 +26,8 @@ class PathGraph {
   PathGraph() noexcept = default;
   explicit PathGraph(Arena& arena) noexcept;
 
-  void clear() SOPT_RT;
+  // Empties the graph; the robot must outlive what follows.
+  void reset(const Robot& robot) SOPT_RT;
 
   // Adds a path whose motions are clear; paths that no longer fit are left out.
   void add(const Path<Robot>& path) SOPT_RT;
@@ -66,10 +68,16 @@ class PathGraph {
   void close(int i, int parent, double length_limit) SOPT_RT;
   [[nodiscard]] bool store(Path<Robot>& out) const SOPT_RT;
 
+  const Robot* robot_ = nullptr;
   FixedVector<Node> nodes_;
   FixedVector<Candidate> queue_;  // binary heap, smallest `through` first
 };
 
 extern template class PathGraph<Point2>;
+extern template class PathGraph<Arm<4>>;
+extern template class PathGraph<Arm<5>>;
+extern template class PathGraph<Arm<6>>;
+extern template class PathGraph<Arm<7>>;
+extern template class PathGraph<Arm<8>>;
 
 }  // namespace sopt

@@ -57,7 +57,7 @@ SamplerResult<Robot> Sampler<Robot>::improve_path(const SamplerProblem<Robot>& p
   Search search{&problem, &deadline, &result, std::int64_t{problem.options->num_batches} + i_round,
                 i_rung,   &known};
   if (i_round < kLatticeLevels) {
-    graph_.clear();
+    graph_.reset(*problem.robot);
     graph_.add(known);
     if (try_lattice(search, i_round)) {
       combine_paths(search);
@@ -108,7 +108,9 @@ void Sampler<Robot>::reset_streams(const Search& search) SOPT_RT {
   const SamplerProblem<Robot>& problem = *search.problem;
   StreamProblem<Robot> stream_problem{problem.robot, problem.world, profile_of(search),
                                       problem.start, problem.goal,  problem.options->sampler};
-  if (search.known != nullptr) stream_problem.max_length = search.known->length();
+  stream_problem.patience = SamplerTuning<Robot>::kPatience
+                            << 2 * std::min<std::int64_t>(search.i_batch, kMaxPatienceBatches);
+  if (search.known != nullptr) stream_problem.max_length = search.known->length(*problem.robot);
   auto reset_stream = [&](int /*i_worker*/, int i) {
     streams_[static_cast<std::size_t>(i)].reset(
         stream_problem, CounterRng(problem.seed, static_cast<std::uint64_t>(i),
@@ -119,7 +121,7 @@ void Sampler<Robot>::reset_streams(const Search& search) SOPT_RT {
   executor_->run(Task(reset_stream), num_streams_);
   search.result->sample_ns += clock_.now_ns() - begin_ns;
   raw_length_.fill(0.0);
-  graph_.clear();
+  graph_.reset(*problem.robot);
   if (search.known != nullptr) graph_.add(*search.known);
 }
 
@@ -132,6 +134,7 @@ bool Sampler<Robot>::take_new_paths(Search& search) SOPT_RT {
     is_new[i] = streams_[i].has_path() && raw_length_[i] == 0.0;
   }
   if (std::none_of(is_new.begin(), is_new.end(), [](bool b) { return b; })) return false;
+  if (search.result->path == nullptr) search.result->first_path_ns = search.result->sample_ns;
   auto shorten = [&](int /*i_worker*/, int i_stream) {
     const auto i = static_cast<std::size_t>(i_stream);
     if (is_new[i]) shorten_path(search, i_stream);
@@ -144,7 +147,7 @@ bool Sampler<Robot>::take_new_paths(Search& search) SOPT_RT {
     const Path<Robot>& path = streams_[i].path();
     result.counts.edges += shortcut_checks_[i];
     graph_.add(path);
-    const double length = path.length();
+    const double length = path.length(*search.problem->robot);
     if (length < search.best_length * (1.0 - kAgreement)) search.num_agreeing = 0;
     if (length <= search.best_length * (1.0 + kAgreement)) ++search.num_agreeing;
     if (length >= search.best_length) continue;
@@ -152,7 +155,7 @@ bool Sampler<Robot>::take_new_paths(Search& search) SOPT_RT {
     result.path = &path;
     result.raw_length = raw_length_[i];
   }
-  if (search.problem->options->shortcut) combine_paths(search);
+  combine_paths(search);
   result.shortcut_ns += clock_.now_ns() - begin_ns;
   return true;
 }
@@ -162,7 +165,8 @@ void Sampler<Robot>::shorten_path(const Search& search, int i_stream) SOPT_RT {
   const auto i = static_cast<std::size_t>(i_stream);
   const SamplerProblem<Robot>& problem = *search.problem;
   Path<Robot>& path = streams_[i].path();
-  raw_length_[i] = std::max(path.length(), std::numeric_limits<double>::min());  // 0: not taken yet
+  raw_length_[i] = std::max(path.length(*problem.robot),
+                            std::numeric_limits<double>::min());  // 0: not taken yet
   shortcut_checks_[i] = 0;
   if (!problem.options->shortcut) return;
   MotionChecker<Robot> checker(*problem.robot, *problem.world, profile_of(search));
@@ -183,19 +187,20 @@ bool Sampler<Robot>::try_lattice(Search& search, int first_level) SOPT_RT {
   bool is_found = lattice_.find_path(checker, problem.start, problem.goal, first_level,
                                      *search.deadline, lattice_path_);
   const std::int64_t found_ns = clock_.now_ns();
-  const double raw_length = lattice_path_.length();
+  const double raw_length = lattice_path_.length(*problem.robot);
   if (is_found && problem.options->shortcut) {
     CounterRng rng(problem.seed, static_cast<std::uint64_t>(kMaxStreams) + 1, kShortcutKey,
                    static_cast<std::uint64_t>(search.i_batch));
     shortcut_path(checker, rng, *search.deadline, lattice_path_);
   }
   result.sample_ns += found_ns - begin_ns;
+  if (is_found && result.path == nullptr) result.first_path_ns = result.sample_ns;
   result.shortcut_ns += clock_.now_ns() - found_ns;
   result.counts.edges += checker.num_checks();
-  is_found = is_found && lattice_path_.length() < search.best_length;
+  is_found = is_found && lattice_path_.length(*problem.robot) < search.best_length;
   if (is_found) {
     graph_.add(lattice_path_);
-    search.best_length = lattice_path_.length();
+    search.best_length = lattice_path_.length(*problem.robot);
     result.path = &lattice_path_;
     result.raw_length = raw_length;
   }
@@ -208,13 +213,14 @@ template <class Robot>
 void Sampler<Robot>::combine_paths(Search& search) SOPT_RT {
   const SamplerProblem<Robot>& problem = *search.problem;
   SamplerResult<Robot>& result = *search.result;
-  if (result.path->vertices.size() == 2) return;  // straight: nothing is shorter
+  // A straight path is the shortest there is.
+  if (!problem.options->shortcut || result.path->vertices.size() == 2) return;
   MotionChecker<Robot> checker(*problem.robot, *problem.world, profile_of(search));
   if (graph_.find_shorter(checker, *search.deadline, search.best_length, combined_)) {
     CounterRng rng(problem.seed, static_cast<std::uint64_t>(kMaxStreams), kShortcutKey,
                    static_cast<std::uint64_t>(search.i_batch));
     shortcut_path(checker, rng, *search.deadline, combined_);
-    const double length = combined_.length();
+    const double length = combined_.length(*problem.robot);
     if (length < search.best_length * (1.0 - kAgreement)) search.num_agreeing = 1;
     search.best_length = length;
     result.path = &combined_;
@@ -241,5 +247,10 @@ SamplerStatus Sampler<Robot>::conclude(const Search& search) SOPT_RT {
 }
 
 template class Sampler<Point2>;
+template class Sampler<Arm<4>>;
+template class Sampler<Arm<5>>;
+template class Sampler<Arm<6>>;
+template class Sampler<Arm<7>>;
+template class Sampler<Arm<8>>;
 
 }  // namespace sopt

@@ -22,6 +22,7 @@
 #include "sampler/lattice_search.h"
 #include "sampler/path_graph.h"
 #include "sampler/sampler_stream.h"
+#include "sampler/tuning.h"
 
 namespace sopt {
 
@@ -57,6 +58,7 @@ struct SamplerResult {
   double raw_length = 0.0;            // of the winner before shortening
   SamplerCounts counts;
   std::int64_t sample_ns = 0;
+  std::int64_t first_path_ns = 0;  // of that, until there was a path
   std::int64_t shortcut_ns = 0;
 };
 
@@ -84,9 +86,7 @@ class Sampler {
   }
 
  private:
-  // Samples per stream and round. A round is the unit after which streams are compared: longer
-  // rounds let more streams finish and compete, shorter ones stop earlier.
-  static constexpr int kRoundSamples = 128;
+  static constexpr int kRoundSamples = SamplerTuning<Robot>::kRoundSamples;
 
   // One rung of one batch.
   struct Search {
@@ -129,5 +129,10 @@ class Sampler {
 };
 
 extern template class Sampler<Point2>;
+extern template class Sampler<Arm<4>>;
+extern template class Sampler<Arm<5>>;
+extern template class Sampler<Arm<6>>;
+extern template class Sampler<Arm<7>>;
+extern template class Sampler<Arm<8>>;
 
 }  // namespace sopt

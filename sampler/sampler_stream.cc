@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "models/point2.h"
+#include "sampler/tuning.h"
 
 namespace sopt {
 namespace {
@@ -27,12 +28,13 @@ void SamplerStream<Robot>::reset(const StreamProblem<Robot>& problem,
                                  const CounterRng& rng) SOPT_RT {
   problem_ = problem;
   rng_ = rng;
-  trees_[kStartTree].reset(problem.start);
-  trees_[kGoalTree].reset(problem.goal);
+  trees_[kStartTree].reset(*problem.robot, problem.start);
+  trees_[kGoalTree].reset(*problem.robot, problem.goal);
   path_.vertices.clear();
   path_overflow_ = false;
   num_checks_ = 0;
   next_tree_ = kStartTree;
+  num_blocked_.fill(0);
   const auto box = problem.robot->sampling_box(*problem.world, problem.profile.rule);
   box_lower_ = box.lower;
   box_size_ = (box.upper - box.lower).cwiseMax(0.0);
@@ -66,8 +68,8 @@ typename Robot::Config SamplerStream<Robot>::sample() SOPT_RT {
     for (int dof = 0; dof < Robot::kDof; ++dof) {
       q[dof] = box_lower_[dof] + box_size_[dof] * rng_.next_uniform();
     }
-    const double through =
-        Robot::path_distance(problem_.start, q) + Robot::path_distance(q, problem_.goal);
+    const double through = problem_.robot->path_distance(problem_.start, q) +
+                           problem_.robot->path_distance(q, problem_.goal);
     if (through < problem_.max_length) break;
   }
   return q;
@@ -76,8 +78,8 @@ typename Robot::Config SamplerStream<Robot>::sample() SOPT_RT {
 template <class Robot>
 typename Robot::Config SamplerStream<Robot>::steer(const Config& from,
                                                    const Config& to) const SOPT_RT {
-  const double distance = Robot::path_distance(from, to);
-  return distance <= range_ ? to : Robot::interpolate(from, to, range_ / distance);
+  const double distance = problem_.robot->path_distance(from, to);
+  return distance <= range_ ? to : problem_.robot->interpolate(from, to, range_ / distance);
 }
 
 template <class Robot>
@@ -100,19 +102,23 @@ bool SamplerStream<Robot>::motion_is_clear(Checker& checker, std::size_t i_tree,
 template <class Robot>
 int SamplerStream<Robot>::extend(Checker& checker, std::size_t i_tree,
                                  const Config& target) SOPT_RT {
+  using Tuning = SamplerTuning<Robot>;
   Tree<Robot>& tree = trees_[i_tree];
   tree.find_near(target, 0.0, near_);
   const int nearest = near_.nearest;
   const Config from = tree.config(nearest);
   const Config reached = steer(from, target);
-  for (const double share : kExtensionShares) {
-    const Config q = share == 1.0 ? reached : Robot::interpolate(from, reached, share);
+  for (const double share : Tuning::kExtensionShares) {
+    if (share < 1.0 && num_blocked_[i_tree] < Tuning::kBlockedInARow) break;
+    const Config q = share == 1.0 ? reached : problem_.robot->interpolate(from, reached, share);
     if (!motion_is_clear(checker, i_tree, nearest, q, RequestEnd::kNone)) continue;
     tree.find_near(q, rewire_radius(tree.size()), near_);
     const int node = tree.try_add(q, best_parent(checker, i_tree, nearest, q));
     if (node != kNoNode) rewire_neighbors(checker, i_tree, node);
+    num_blocked_[i_tree] = 0;
     return node;
   }
+  ++num_blocked_[i_tree];
   return kNoNode;
 }
 
@@ -121,7 +127,7 @@ int SamplerStream<Robot>::best_parent(Checker& checker, std::size_t i_tree, int 
                                       const Config& q) SOPT_RT {
   const Tree<Robot>& tree = trees_[i_tree];
   const auto cost_through = [&](int node) {
-    return tree.cost(node) + Robot::path_distance(tree.config(node), q);
+    return tree.cost(node) + problem_.robot->path_distance(tree.config(node), q);
   };
   const double cost_limit = cost_through(nearest) * (1.0 - kRewireGain);
   std::array<double, kMaxNeighbors> cost{};
@@ -147,7 +153,7 @@ void SamplerStream<Robot>::rewire_neighbors(Checker& checker, std::size_t i_tree
     const int neighbor = near_.index[i];
     if (neighbor == 0 || neighbor == tree.parent(node)) continue;
     const Config& at = tree.config(neighbor);
-    const double through = tree.cost(node) + Robot::path_distance(q, at);
+    const double through = tree.cost(node) + problem_.robot->path_distance(q, at);
     if (through >= tree.cost(neighbor) * (1.0 - kRewireGain)) continue;
     if (motion_is_clear(checker, i_tree, node, at, RequestEnd::kNone)) tree.rewire(neighbor, node);
   }
@@ -157,7 +163,7 @@ template <class Robot>
 void SamplerStream<Robot>::try_goal(Checker& checker, int node) SOPT_RT {
   const Config& q = trees_[kStartTree].config(node);
   const bool is_root = node == 0;
-  if (!is_root && Robot::path_distance(q, problem_.goal) > range_) return;
+  if (!is_root && problem_.robot->path_distance(q, problem_.goal) > range_) return;
   if (motion_is_clear(checker, kStartTree, node, problem_.goal, RequestEnd::kGoal)) {
     store_path(node, 0);
   }
@@ -181,8 +187,12 @@ void SamplerStream<Robot>::try_connect(Checker& checker, std::size_t i_tree, int
       return;
     }
     const Config next = steer(other.config(from), q);
-    if (next == q || !motion_is_clear(checker, i_other, from, next, RequestEnd::kNone)) return;
+    if (next == q || !motion_is_clear(checker, i_other, from, next, RequestEnd::kNone)) {
+      if (i_step == 0) ++num_blocked_[i_other];
+      return;
+    }
     from = other.try_add(next, from);
+    num_blocked_[i_other] = 0;
   }
 }
 
@@ -198,6 +208,7 @@ void SamplerStream<Robot>::store_path(int start_node, int goal_node) SOPT_RT {
   for (int i = goal_node; i != kNoNode && fits; i = trees_[kGoalTree].parent(i)) {
     fits = vertices.try_push_back(trees_[kGoalTree].config(i));
   }
+  path_.unwrap(*problem_.robot);
   if (!fits) {
     vertices.clear();
     path_overflow_ = true;
@@ -224,5 +235,10 @@ int SamplerStream<Robot>::parent(int i) const SOPT_RT {
 }
 
 template class SamplerStream<Point2>;
+template class SamplerStream<Arm<4>>;
+template class SamplerStream<Arm<5>>;
+template class SamplerStream<Arm<6>>;
+template class SamplerStream<Arm<7>>;
+template class SamplerStream<Arm<8>>;
 
 }  // namespace sopt

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "models/arm.h"
 #include "models/config.h"
 #include "models/point2.h"
 #include "models/trajectory.h"
@@ -30,6 +31,7 @@ struct StreamProblem {
   typename Robot::Config start{};
   typename Robot::Config goal{};
   SamplerMode mode = SamplerMode::kRrtStarConnect;
+  int patience = 0;  // see SamplerTuning::kPatience
   // Only configurations through which a path can be shorter than this are sampled [Gammell,
   // Srinivasa, Barfoot 2014], as far as kInformedTries find them.
   double max_length = std::numeric_limits<double>::infinity();
@@ -51,9 +53,10 @@ class SamplerStream {
   void run(int num_samples, const Deadline& deadline) SOPT_RT;
 
   [[nodiscard]] bool has_path() const SOPT_RT { return !path_.vertices.empty(); }
-  // No more nodes fit: more samples are useless.
+  // More samples are useless, or nearly: no more nodes fit, or a tree is shut in.
   [[nodiscard]] bool exhausted() const SOPT_RT {
-    return trees_[kStartTree].full() || trees_[kGoalTree].full() || path_overflow_;
+    return trees_[kStartTree].full() || trees_[kGoalTree].full() || path_overflow_ ||
+           is_shut_in(kStartTree) || is_shut_in(kGoalTree);
   }
   [[nodiscard]] Path<Robot>& path() SOPT_RT { return path_; }
   [[nodiscard]] const Path<Robot>& path() const SOPT_RT { return path_; }
@@ -77,9 +80,6 @@ class SamplerStream {
   static constexpr int kMaxConnectSteps = 64;
   // Longest motion of one extension, as a share of the sampling box's diagonal.
   static constexpr double kRangeShare = 0.2;
-  // Deviation: shares of its length at which an extension is tried, RRT* tries one; among narrow
-  // doors long motions are nearly always blocked.
-  static constexpr std::array<double, 2> kExtensionShares = {1.0, 0.25};
   // Deviation: of the radius that asymptotic optimality asks for, because shortening the paths is
   // cheaper than rewiring (docs/RESULTS.md).
   static constexpr double kRadiusShare = 0.5;
@@ -100,6 +100,10 @@ class SamplerStream {
                                      const Config& to, RequestEnd to_end) SOPT_RT;
   [[nodiscard]] double rewire_radius(int num_nodes) const SOPT_RT;
   [[nodiscard]] Config steer(const Config& from, const Config& to) const SOPT_RT;
+  [[nodiscard]] bool is_shut_in(std::size_t i_tree) const SOPT_RT {
+    return problem_.patience > 0 &&
+           num_blocked_[i_tree] > problem_.patience * trees_[i_tree].size();
+  }
 
   StreamProblem<Robot> problem_;
   CounterRng rng_{0};
@@ -109,12 +113,18 @@ class SamplerStream {
   Config box_lower_{};
   Config box_size_{};
   double range_ = 0.0;
-  double radius_scale_ = 0.0;  // gamma of RRT*: radius = gamma (log n / n)^(1/dof)
+  double radius_scale_ = 0.0;         // gamma of RRT*: radius = gamma (log n / n)^(1/dof)
+  std::array<int, 2> num_blocked_{};  // extensions in a row, by tree
   std::size_t next_tree_ = kStartTree;
   std::int64_t num_checks_ = 0;
   bool path_overflow_ = false;
 };
 
 extern template class SamplerStream<Point2>;
+extern template class SamplerStream<Arm<4>>;
+extern template class SamplerStream<Arm<5>>;
+extern template class SamplerStream<Arm<6>>;
+extern template class SamplerStream<Arm<7>>;
+extern template class SamplerStream<Arm<8>>;
 
 }  // namespace sopt

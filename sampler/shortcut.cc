@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sampler/tuning.h"
+
 namespace sopt {
 namespace {
 
@@ -14,14 +16,14 @@ struct PathPoint {
 };
 
 template <class Robot>
-PathPoint<Robot> point_at(const Path<Robot>& path, double from_start) SOPT_RT {
+PathPoint<Robot> point_at(const Robot& robot, const Path<Robot>& path, double from_start) SOPT_RT {
   const auto& v = path.vertices;
   double passed = 0.0;
   for (int i = 0; i + 1 < v.size(); ++i) {
-    const double length = Robot::path_distance(v[i], v[i + 1]);
+    const double length = robot.path_distance(v[i], v[i + 1]);
     if (from_start <= passed + length && length > 0.0) {
       const double share = (from_start - passed) / length;
-      return {i, from_start, Robot::interpolate(v[i], v[i + 1], share)};
+      return {i, from_start, robot.interpolate(v[i], v[i + 1], share)};
     }
     passed += length;
   }
@@ -78,14 +80,17 @@ void drop_vertices(MotionChecker<Robot>& checker, const Deadline& deadline,
 template <class Robot>
 void replace_stretches(MotionChecker<Robot>& checker, CounterRng& rng, const Deadline& deadline,
                        Path<Robot>& path) SOPT_RT {
-  double length = path.length();
-  for (int i = 0; i < kShortcutTries && path.vertices.size() > 2 && !deadline.expired(); ++i) {
+  const Robot& robot = checker.robot();
+  double length = path.length(robot);
+  for (int i = 0;
+       i < SamplerTuning<Robot>::kShortcutTries && path.vertices.size() > 2 && !deadline.expired();
+       ++i) {
     const double s = rng.next_uniform() * length;
     const double t = rng.next_uniform() * length;
-    const PathPoint<Robot> a = point_at(path, std::min(s, t));
-    const PathPoint<Robot> b = point_at(path, std::max(s, t));
+    const PathPoint<Robot> a = point_at(robot, path, std::min(s, t));
+    const PathPoint<Robot> b = point_at(robot, path, std::max(s, t));
     if (a.i_vertex == b.i_vertex) continue;
-    const double gain = b.from_start - a.from_start - Robot::path_distance(a.config, b.config);
+    const double gain = b.from_start - a.from_start - robot.path_distance(a.config, b.config);
     if (gain <= 1e-9 * length) continue;
     if (!checker.is_clear(a.config, RequestEnd::kNone, b.config, RequestEnd::kNone)) continue;
     if (!splice(path, a, b)) return;
@@ -101,9 +106,20 @@ void shortcut_path(MotionChecker<Robot>& checker, CounterRng& rng, const Deadlin
   drop_vertices(checker, deadline, path);
   replace_stretches(checker, rng, deadline, path);
   drop_vertices(checker, deadline, path);
+  path.unwrap(checker.robot());
 }
 
 template void shortcut_path(MotionChecker<Point2>&, CounterRng&, const Deadline&,
                             Path<Point2>&) SOPT_RT;
+template void shortcut_path(MotionChecker<Arm<4>>&, CounterRng&, const Deadline&,
+                            Path<Arm<4>>&) SOPT_RT;
+template void shortcut_path(MotionChecker<Arm<5>>&, CounterRng&, const Deadline&,
+                            Path<Arm<5>>&) SOPT_RT;
+template void shortcut_path(MotionChecker<Arm<6>>&, CounterRng&, const Deadline&,
+                            Path<Arm<6>>&) SOPT_RT;
+template void shortcut_path(MotionChecker<Arm<7>>&, CounterRng&, const Deadline&,
+                            Path<Arm<7>>&) SOPT_RT;
+template void shortcut_path(MotionChecker<Arm<8>>&, CounterRng&, const Deadline&,
+                            Path<Arm<8>>&) SOPT_RT;
 
 }  // namespace sopt

@@ -2,10 +2,11 @@
 // are replaced by a straight motion when that is clear [Geraerts, Overmars 2007], and vertices are
 // dropped once more. Makes the optimised result nearly independent of the number of
 // segments and halves its iterations (docs/RESULTS.md). Deviation: the paper has no such step.
-// Never lengthens a path and keeps both ends exactly. At most kShortcutTries + 2 kMaxSkip n checks
-// for a path of n vertices.
+// Never lengthens a path and keeps both ends exactly. At most SamplerTuning::kShortcutTries + 2
+// kMaxSkip n checks for a path of n vertices.
 #pragma once
 
+#include "models/arm.h"
 #include "models/point2.h"
 #include "models/trajectory.h"
 #include "rt/deadline.h"
@@ -14,8 +15,7 @@
 
 namespace sopt {
 
-inline constexpr int kShortcutTries = 60;  // random stretches
-inline constexpr int kMaxSkip = 16;        // vertices dropped at once
+inline constexpr int kMaxSkip = 16;  // vertices dropped at once
 
 template <class Robot>
 void shortcut_path(MotionChecker<Robot>& checker, CounterRng& rng, const Deadline& deadline,
@@ -23,5 +23,15 @@ void shortcut_path(MotionChecker<Robot>& checker, CounterRng& rng, const Deadlin
 
 extern template void shortcut_path(MotionChecker<Point2>&, CounterRng&, const Deadline&,
                                    Path<Point2>&) SOPT_RT;
+extern template void shortcut_path(MotionChecker<Arm<4>>&, CounterRng&, const Deadline&,
+                                   Path<Arm<4>>&) SOPT_RT;
+extern template void shortcut_path(MotionChecker<Arm<5>>&, CounterRng&, const Deadline&,
+                                   Path<Arm<5>>&) SOPT_RT;
+extern template void shortcut_path(MotionChecker<Arm<6>>&, CounterRng&, const Deadline&,
+                                   Path<Arm<6>>&) SOPT_RT;
+extern template void shortcut_path(MotionChecker<Arm<7>>&, CounterRng&, const Deadline&,
+                                   Path<Arm<7>>&) SOPT_RT;
+extern template void shortcut_path(MotionChecker<Arm<8>>&, CounterRng&, const Deadline&,
+                                   Path<Arm<8>>&) SOPT_RT;
 
 }  // namespace sopt

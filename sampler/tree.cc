@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "models/arm.h"
 #include "models/point2.h"
 
 namespace sopt {
@@ -26,6 +27,14 @@ void keep_nearest(NearNodes& near, int index, float distance2, float& limit2) no
   }
 }
 
+// Differences of angles, less whole turns. Padding stays far.
+[[gnu::always_inline]] inline V8f short_way8(const V8f& d) noexcept {
+  constexpr float kTurn = 6.28318530717958647692F;
+  constexpr float kRounder = 0x1.8p23F;  // adding it rounds to an integer
+  const V8f turns = (d * (1.0F / kTurn) + kRounder) - kRounder;
+  return abs8(d) < splat8(0.5F * kFar) ? d - turns * kTurn : d;
+}
+
 }  // namespace
 
 template <class Robot>
@@ -36,7 +45,8 @@ Tree<Robot>::Tree(Arena& arena, int max_nodes) noexcept : nodes_(arena, max_node
 }
 
 template <class Robot>
-void Tree<Robot>::reset(const Config& root) SOPT_RT {
+void Tree<Robot>::reset(const Robot& robot, const Config& root) SOPT_RT {
+  robot_ = &robot;
   nodes_.clear();
   try_add(root, kNoNode);
 }
@@ -46,7 +56,7 @@ int Tree<Robot>::try_add(const Config& config, int parent) SOPT_RT {
   Node node;
   node.config = config;
   if (parent != kNoNode) {
-    node.cost = nodes_[parent].cost + Robot::path_distance(nodes_[parent].config, config);
+    node.cost = nodes_[parent].cost + robot_->path_distance(nodes_[parent].config, config);
   }
   if (!nodes_.try_push_back(node)) return kNoNode;
   const int i_node = nodes_.size() - 1;
@@ -69,8 +79,8 @@ void Tree<Robot>::find_near(const Config& q, double radius, NearNodes& out) cons
   for (int i = 0; i < nodes_.size(); i += kLanesFloat, index += kLanesFloat) {
     V8f distance2 = splat8(0.0F);
     for (int dof = 0; dof < Robot::kDof; ++dof) {
-      const V8f d =
-          load8(coordinate_[static_cast<std::size_t>(dof)] + i) - static_cast<float>(q[dof]);
+      V8f d = load8(coordinate_[static_cast<std::size_t>(dof)] + i) - static_cast<float>(q[dof]);
+      if (robot_->is_continuous(dof)) d = short_way8(d);
       distance2 += d * d;
     }
     best_index = distance2 < best ? index : best_index;
@@ -128,7 +138,7 @@ void Tree<Robot>::rewire(int node, int parent) SOPT_RT {
   while (head < tail) {
     Node& current = nodes_[queue[head++]];
     const Node& above = nodes_[current.parent];
-    current.cost = above.cost + Robot::path_distance(above.config, current.config);
+    current.cost = above.cost + robot_->path_distance(above.config, current.config);
     for (int child = current.first_child; child != kNoNode && tail < queue.size();
          child = nodes_[child].next_sibling) {
       queue[tail++] = child;
@@ -137,5 +147,10 @@ void Tree<Robot>::rewire(int node, int parent) SOPT_RT {
 }
 
 template class Tree<Point2>;
+template class Tree<Arm<4>>;
+template class Tree<Arm<5>>;
+template class Tree<Arm<6>>;
+template class Tree<Arm<7>>;
+template class Tree<Arm<8>>;
 
 }  // namespace sopt

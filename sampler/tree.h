@@ -1,7 +1,8 @@
 // A tree of configurations in fixed storage, with costs from the root. Neighbour search is a linear
 // scan over structure-of-arrays floats, eight nodes at a time: below 8 k nodes in 2-D it beats
-// kd-trees (docs/RESULTS.md) and needs no upkeep. Floats only choose neighbours; every length that
-// enters a cost is computed in double from the configurations.
+// kd-trees (docs/RESULTS.md) and needs no upkeep. Joints that turn without end count the short way.
+// Floats only choose neighbours; every length that enters a cost is computed in double from the
+// configurations.
 #pragma once
 
 #include <array>
@@ -34,8 +35,8 @@ class Tree {
   Tree() noexcept = default;
   Tree(Arena& arena, int max_nodes) noexcept;
 
-  // Empties the tree and plants its root.
-  void reset(const Config& root) SOPT_RT;
+  // Empties the tree and plants its root. The robot must outlive what follows.
+  void reset(const Robot& robot, const Config& root) SOPT_RT;
 
   [[nodiscard]] int size() const SOPT_RT { return nodes_.size(); }
   [[nodiscard]] bool full() const SOPT_RT { return nodes_.size() == nodes_.capacity(); }
@@ -70,6 +71,7 @@ class Tree {
   void link(int node, int parent) SOPT_RT;
   void unlink(int node) SOPT_RT;
 
+  const Robot* robot_ = nullptr;
   FixedVector<Node> nodes_;
   std::array<float*, Robot::kDof> coordinate_{};  // [dof][node], padded to whole lanes
 };

@@ -217,7 +217,7 @@ class PaperPlanner : public PlannerTest {
   std::vector<Vec2> plan_0(const PlanResult<Point2>& result) {
     InArena<Trajectory<Point2>> reference(small_settings().max_horizon);
     const Point2& robot = test_planner_.robot;
-    EXPECT_TRUE(make_reference(*result.path,
+    EXPECT_TRUE(make_reference(robot, *result.path,
                                choose_step_length(robot, *request_.world, request_.options),
                                request_.options.dt_s, *reference));
     return copy_of(reference->states.span());

@@ -135,7 +135,7 @@ class PlannerImprove : public PlannerTest {
     // Of a plan that fell back they are those of the sweeps, which may have changed the horizon.
     EXPECT_TRUE(result.splits.back() == horizon || result.fell_back);
     ASSERT_NE(result.path, nullptr);
-    EXPECT_NEAR(result.path->length(), result.history.front().path_length, 1e-9);
+    EXPECT_NEAR(result.path->length(Point2{}), result.history.front().path_length, 1e-9);
   }
 
   // By the oracle and by verify.

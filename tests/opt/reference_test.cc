@@ -19,7 +19,7 @@ const Aabb2 kBox = {Vec2::Zero(), Vec2::Constant(10.0)};
 TEST(MakeReference, CutsOneMotionIntoEqualSteps) {
   TestPath path({{0.0, 0.0}, {1.0, 0.0}});
   InArena<Trajectory<Point2>> out(100);
-  ASSERT_TRUE(make_reference(path.path, 0.3, 0.25, *out));
+  ASSERT_TRUE(make_reference(Point2{}, path.path, 0.3, 0.25, *out));
   ASSERT_EQ(out->horizon(), 4);
   EXPECT_EQ(out->dt_s, 0.25);
   for (int t = 0; t <= 4; ++t) EXPECT_NEAR(out->states[t].x(), 0.25 * t, 1e-15);
@@ -28,7 +28,7 @@ TEST(MakeReference, CutsOneMotionIntoEqualSteps) {
 TEST(MakeReference, DoesNotCutWhatFitsExactly) {
   TestPath path({{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.5}});
   InArena<Trajectory<Point2>> out(100);
-  ASSERT_TRUE(make_reference(path.path, 0.5, 0.1, *out));
+  ASSERT_TRUE(make_reference(Point2{}, path.path, 0.5, 0.1, *out));
   EXPECT_EQ(out->horizon(), 3);
 }
 
@@ -45,7 +45,7 @@ TEST(MakeReference, FollowsTheVerticesOfRandomPaths) {
     }
     const double step = random.uniform(0.05, 1.0);
     TestPath path(vertices);
-    ASSERT_TRUE(make_reference(path.path, step, 0.1, *out));
+    ASSERT_TRUE(make_reference(Point2{}, path.path, step, 0.1, *out));
     const auto states = out->states.span();
     ASSERT_GE(out->horizon(), 2);
     EXPECT_EQ(states.front(), vertices.front());
@@ -70,7 +70,7 @@ TEST(MakeReference, FollowsTheVerticesOfRandomPaths) {
       t = next;
     }
     EXPECT_EQ(t + 1, states.size());
-    EXPECT_NEAR(oracle::length_of(states), path.path.length(), 1e-9);
+    EXPECT_NEAR(oracle::length_of(states), path.path.length(Point2{}), 1e-9);
   }
 }
 
@@ -78,7 +78,7 @@ TEST(MakeReference, TakesAtLeastTwoSteps) {
   InArena<Trajectory<Point2>> out(100);
   for (const double length : {0.0, 1e-12, 0.05, 0.9, 1.0}) {
     TestPath path({{3.0, 4.0}, {3.0 + length, 4.0}});
-    ASSERT_TRUE(make_reference(path.path, 1.0, 0.1, *out));
+    ASSERT_TRUE(make_reference(Point2{}, path.path, 1.0, 0.1, *out));
     EXPECT_EQ(out->horizon(), 2);
     EXPECT_EQ(out->states[0], Vec2(3.0, 4.0));
     EXPECT_EQ(out->states[2], Vec2(3.0 + length, 4.0));
@@ -88,19 +88,19 @@ TEST(MakeReference, TakesAtLeastTwoSteps) {
 TEST(MakeReference, RefusesAHorizonBeyondTheCapacity) {
   TestPath path({{0.0, 0.0}, {10.0, 0.0}});
   InArena<Trajectory<Point2>> out(10);
-  EXPECT_TRUE(make_reference(path.path, 1.0, 0.1, *out));
+  EXPECT_TRUE(make_reference(Point2{}, path.path, 1.0, 0.1, *out));
   EXPECT_EQ(out->horizon(), 10);
-  EXPECT_FALSE(make_reference(path.path, 0.9, 0.1, *out));
-  EXPECT_FALSE(make_reference(path.path, 1e-12, 0.1, *out));
-  EXPECT_FALSE(make_reference(path.path, 1e-300, 0.1, *out));
+  EXPECT_FALSE(make_reference(Point2{}, path.path, 0.9, 0.1, *out));
+  EXPECT_FALSE(make_reference(Point2{}, path.path, 1e-12, 0.1, *out));
+  EXPECT_FALSE(make_reference(Point2{}, path.path, 1e-300, 0.1, *out));
 }
 
 TEST(MakeReference, ReplacesWhatWasThere) {
   InArena<Trajectory<Point2>> out(100);
   TestPath longer({{0.0, 0.0}, {10.0, 0.0}});
   TestPath shorter({{5.0, 5.0}, {7.0, 5.0}});
-  ASSERT_TRUE(make_reference(longer.path, 0.2, 0.1, *out));
-  ASSERT_TRUE(make_reference(shorter.path, 1.0, 0.2, *out));
+  ASSERT_TRUE(make_reference(Point2{}, longer.path, 0.2, 0.1, *out));
+  ASSERT_TRUE(make_reference(Point2{}, shorter.path, 1.0, 0.2, *out));
   EXPECT_EQ(out->horizon(), 2);
   EXPECT_EQ(out->states[0], Vec2(5.0, 5.0));
   EXPECT_EQ(out->dt_s, 0.2);

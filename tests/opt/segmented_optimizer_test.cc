@@ -167,9 +167,16 @@ TEST_F(SegmentedOptimizerTest, StopsWhenBothParitiesGainLittle) {
     const double tolerance = options_.tol_step * (static_cast<double>(reference_.size()) - 1.0);
     const auto gain = [&](std::size_t i) { return run.history[i - 1].cost - run.history[i].cost; };
     EXPECT_LE(gain(n - 1), tolerance * (1.0 + 1e-9));
-    EXPECT_LE(gain(n - 2), tolerance * (1.0 + 1e-9));
+    // One sweep over a single window is both.
+    const bool was_single = run.history.back().segments == 1;
+    if (!was_single) {
+      EXPECT_LE(gain(n - 2), tolerance * (1.0 + 1e-9));
+    }
     // And not before.
     for (std::size_t i = 2; i + 1 < n; ++i) {
+      if (run.history[i].segments == 1) {
+        EXPECT_GT(gain(i), tolerance * (1.0 - 1e-9)) << i;
+      }
       EXPECT_GT(std::max(gain(i), gain(i - 1)), tolerance * (1.0 - 1e-9)) << i;
     }
   }

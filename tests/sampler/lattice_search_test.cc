@@ -72,7 +72,7 @@ TEST_F(LatticeSearchTest, FindsTheWayThroughRoomsInARow) {
     use(rooms_in_a_row(num_walls, 0.6));
     ASSERT_TRUE(find({0.5, 5.0}, {9.5, 5.0})) << num_walls;
     check_path();
-    EXPECT_GT(path_->length(), 8.0 * num_walls) << "up and down through every gap";
+    EXPECT_GT(path_->length(Point2{}), 8.0 * num_walls) << "up and down through every gap";
   }
 }
 
@@ -94,7 +94,7 @@ TEST_F(LatticeSearchTest, IsNearlyAsShortAsTheShortestWay) {
   ASSERT_TRUE(find({1.0, 2.0}, {9.0, 2.0}));
   check_path();
   const double shortest_m = 2.0 * Vec2(3.9, 6.15).norm();
-  EXPECT_LT(path_->length(), 1.1 * shortest_m);
+  EXPECT_LT(path_->length(Point2{}), 1.1 * shortest_m);
 }
 
 TEST_F(LatticeSearchTest, PassesByPointsOnTheWay) {
@@ -102,7 +102,7 @@ TEST_F(LatticeSearchTest, PassesByPointsOnTheWay) {
   ASSERT_TRUE(find({1.0, 1.0}, {9.0, 1.0}));
   EXPECT_LT(path_->vertices.size(), 8) << "the way has more than 60 lattice motions";
   const double shortest_m = Vec2(2.85, 5.15).norm() + 0.5 + Vec2(4.65, 5.15).norm();
-  EXPECT_LT(path_->length(), 1.03 * shortest_m);
+  EXPECT_LT(path_->length(Point2{}), 1.03 * shortest_m);
 }
 
 // The short way leads through a gap between the points of the coarse lattice.
@@ -111,11 +111,11 @@ TEST_F(LatticeSearchTest, FindsMoreWaysOnAFinerLevel) {
        {{oracle::box_between({4.9, 0.0}, {5.1, 4.89})},
         {oracle::box_between({4.9, 5.25}, {5.1, 9.0})}}});
   ASSERT_TRUE(find({1.0, 5.0}, {9.0, 5.0}));
-  const double coarse_m = path_->length();
+  const double coarse_m = path_->length(Point2{});
   first_level_ = 1;
   ASSERT_TRUE(find({1.0, 5.0}, {9.0, 5.0}));
   check_path();
-  EXPECT_LT(path_->length(), 8.1);
+  EXPECT_LT(path_->length(Point2{}), 8.1);
   EXPECT_GT(coarse_m, 11.0);
   first_level_ = kLatticeLevels;
   EXPECT_FALSE(find({1.0, 5.0}, {9.0, 5.0}));
@@ -157,7 +157,7 @@ TEST_F(LatticeSearchTest, FindsAWayWhereverAFloodOfCellsDoes) {
     ASSERT_TRUE(find(line.front(), line.back())) << k;
     check_path();
     ++num_found;
-    EXPECT_LT(path_->length(), 1.1 * oracle::length_of(line) + 0.5) << k;
+    EXPECT_LT(path_->length(Point2{}), 1.1 * oracle::length_of(line) + 0.5) << k;
   }
   EXPECT_EQ(num_found, 60);
 }

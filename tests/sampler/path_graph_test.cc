@@ -21,6 +21,8 @@ using oracle::SceneOracle;
 using oracle::TestPath;
 using oracle::TestWorld;
 
+constexpr Point2 kRobot{};
+
 using Points = std::vector<Vec2>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -75,7 +77,7 @@ TEST_F(PathGraphTest, ChangesFromOnePathToAnother) {
         {oracle::box_between({7.0, 1.5}, {7.2, 8.5}), kDefaultMargin}}});
   const Points a = {{1, 2}, {3.1, 1.2}, {5, 5}, {7.1, 8.8}, {9, 2}};
   const Points b = {{1, 2}, {3.1, 8.8}, {5, 5.1}, {7.1, 1.2}, {9, 2}};
-  graph_->clear();
+  graph_->reset(kRobot);
   graph_->add(TestPath(a).path);
   graph_->add(TestPath(b).path);
   TestPath out({});
@@ -112,7 +114,7 @@ TEST_F(PathGraphTest, FindsTheShortestWayOverAllClearMotions) {
     }
     const Scene scene = oracle::random_scene_around(random, kBounds, joined, 40, 0.7, 0.16);
     use(scene);
-    graph_->clear();
+    graph_->reset(kRobot);
     double shortest_input = kInfinity;
     for (const Points& path : paths) {
       graph_->add(TestPath(path).path);
@@ -124,16 +126,16 @@ TEST_F(PathGraphTest, FindsTheShortestWayOverAllClearMotions) {
     const auto result = out.path.vertices.span();
     EXPECT_EQ(result.front(), start);
     EXPECT_EQ(result.back(), goal);
-    EXPECT_LE(out.path.length(), shortest_input * (1.0 + 1e-12));
+    EXPECT_LE(out.path.length(Point2{}), shortest_input * (1.0 + 1e-12));
     EXPECT_GE(dense.path_slack(result, robot_.radius_m, profile_), -1e-9);
     const double expected = brute_force_length(all, dense, robot_.radius_m, profile_);
-    EXPECT_NEAR(out.path.length(), expected, 1e-9) << oracle::to_text(scene);
+    EXPECT_NEAR(out.path.length(Point2{}), expected, 1e-9) << oracle::to_text(scene);
 
     // A limit is strict, and a refusal leaves the output alone.
     if (expected < shortest_input - 1e-9) {
       ++num_mixed;
       EXPECT_TRUE(find(shortest_input, out.path));
-      EXPECT_NEAR(out.path.length(), expected, 1e-9);
+      EXPECT_NEAR(out.path.length(Point2{}), expected, 1e-9);
     }
     const Points kept = oracle::copy_of(out.path.vertices.span());
     EXPECT_FALSE(find(expected - 1e-9, out.path));
@@ -144,7 +146,7 @@ TEST_F(PathGraphTest, FindsTheShortestWayOverAllClearMotions) {
 
 TEST_F(PathGraphTest, LeavesOutPathsThatDoNotFit) {
   use({kBounds, {}});
-  graph_->clear();
+  graph_->reset(kRobot);
   Random random(2);
   for (int k = 0; k < 10; ++k) {
     Points path = oracle::random_polyline(random, kInner, 40);
@@ -154,13 +156,13 @@ TEST_F(PathGraphTest, LeavesOutPathsThatDoNotFit) {
   }
   TestPath out({});
   ASSERT_TRUE(find(kInfinity, out.path));
-  EXPECT_NEAR(out.path.length(), std::hypot(8.0, 8.0), 1e-9);
+  EXPECT_NEAR(out.path.length(Point2{}), std::hypot(8.0, 8.0), 1e-9);
 }
 
 TEST_F(PathGraphTest, RefusesWhenTheResultDoesNotFit) {
   const Points path = {{1, 2}, {3.1, 1.2}, {7.1, 1.2}, {9, 2}};
   use({kBounds, {{oracle::box_between({3.0, 1.5}, {7.2, 8.5}), kDefaultMargin}}});
-  graph_->clear();
+  graph_->reset(kRobot);
   graph_->add(TestPath(path).path);
   TestPath small({{5, 5}, {6, 6}}, 3);
   EXPECT_FALSE(find(kInfinity, small.path));
@@ -171,7 +173,7 @@ TEST_F(PathGraphTest, RefusesWhenTheResultDoesNotFit) {
 
 TEST_F(PathGraphTest, GivesUpAtTheDeadline) {
   use({kBounds, {}});
-  graph_->clear();
+  graph_->reset(kRobot);
   graph_->add(TestPath({{1, 1}, {5, 8}, {9, 9}}).path);
   ManualClock clock;
   TestPath out({});
@@ -179,10 +181,11 @@ TEST_F(PathGraphTest, GivesUpAtTheDeadline) {
   EXPECT_TRUE(out.path.vertices.empty());
 }
 
-TEST_F(PathGraphTest, HasNoPathAfterClear) {
+TEST_F(PathGraphTest, HasNoPathAfterReset) {
   use({kBounds, {}});
+  graph_->reset(kRobot);
   graph_->add(TestPath({{1, 1}, {9, 9}}).path);
-  graph_->clear();
+  graph_->reset(kRobot);
   TestPath out({});
   EXPECT_FALSE(find(kInfinity, out.path));
 }
@@ -193,7 +196,7 @@ TEST_F(PathGraphTest, TouchesNoHeap) {
   TestPath input({{1, 1}, {5, 8}, {9, 9}});
   TestPath out({});
   RtGuard guard;
-  graph_->clear();
+  graph_->reset(kRobot);
   graph_->add(input.path);
   const bool found = find(kInfinity, out.path);
   guard.stop();

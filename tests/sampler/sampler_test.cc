@@ -68,7 +68,7 @@ class SamplerTest : public ::testing::TestWithParam<SamplerMode> {
     const MarginProfile& profile = ladder_[static_cast<std::size_t>(result.i_rung)];
     EXPECT_GE(SceneOracle(scene_).path_slack(vertices, robot_.radius_m, profile), -kTol_m)
         << oracle::to_text(scene_) << oracle::to_text(vertices);
-    EXPECT_LE(result.path->length(), result.raw_length * (1.0 + 1e-12));
+    EXPECT_LE(result.path->length(Point2{}), result.raw_length * (1.0 + 1e-12));
     EXPECT_GT(result.counts.edges, 0);
   }
 
@@ -88,7 +88,7 @@ TEST_P(SamplerTest, FindsAStraightPathInAnEmptyRoom) {
   const auto result = sampler->find_path(problem_, Deadline());
   check(result);
   EXPECT_EQ(result.i_rung, 0);
-  EXPECT_NEAR(result.path->length(), std::hypot(8.0, 0.5), 1e-9);
+  EXPECT_NEAR(result.path->length(Point2{}), std::hypot(8.0, 0.5), 1e-9);
 }
 
 TEST_P(SamplerTest, FindsClearPathsInRandomWorlds) {
@@ -318,7 +318,7 @@ TEST_P(SamplerImproveTest, ShortensADetourAndKeepsTheRung) {
       const auto result = improve(*sampler_, detour());
       check(result);
       EXPECT_EQ(result.i_rung, i_rung);
-      EXPECT_LT(result.path->length(), 0.9 * oracle::length_of(detour()));
+      EXPECT_LT(result.path->length(Point2{}), 0.9 * oracle::length_of(detour()));
     }
   }
 }
@@ -330,9 +330,9 @@ TEST_P(SamplerImproveTest, IsNeverLongerThanTheKnownPath) {
     const auto result = improve(*sampler_, known, i_round);
     if (result.status == SamplerStatus::kNoPath) continue;  // there is hardly room for one
     check(result);
-    EXPECT_LE(result.path->length(), length_m * (1.0 + 1e-12)) << i_round;
+    EXPECT_LE(result.path->length(Point2{}), length_m * (1.0 + 1e-12)) << i_round;
     known = oracle::copy_of(result.path->vertices.span());
-    length_m = result.path->length();
+    length_m = result.path->length(Point2{});
   }
   // The least for a body of 0.1 and a margin of 0.05 at the lower edge of a gap of 0.6.
   const double edge_m = 2.7 + 0.15;
@@ -347,7 +347,7 @@ TEST_P(SamplerImproveTest, SearchesEveryLevelOfTheLatticeFirst) {
     const auto result = improve(*sampler_, detour(), i_round);
     check_path(result);
     EXPECT_EQ(result.counts.rounds == 0, i_round < kLatticeLevels) << i_round;
-    EXPECT_LT(result.path->length(), 0.9 * oracle::length_of(detour()));
+    EXPECT_LT(result.path->length(Point2{}), 0.9 * oracle::length_of(detour()));
   }
 }
 
@@ -359,7 +359,7 @@ TEST_P(SamplerImproveTest, FindsNothingShorterThanAStraightPath) {
     for (int i_round = 0; i_round < 5; ++i_round) {
       const auto result = improve(*sampler_, straight, i_round);
       if (result.path == nullptr) continue;
-      EXPECT_GE(result.path->length(), oracle::length_of(straight) * (1.0 - 1e-12));
+      EXPECT_GE(result.path->length(Point2{}), oracle::length_of(straight) * (1.0 - 1e-12));
     }
   }
 }

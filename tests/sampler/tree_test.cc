@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "models/arm.h"
 #include "models/point2.h"
+#include "tests/support/arm_oracle.h"
 #include "tests/support/test_problem.h"
 
 namespace sopt {
@@ -14,6 +16,7 @@ namespace {
 using oracle::InArena;
 using oracle::Random;
 
+constexpr Point2 kRobot{};
 const Aabb2 kBox = {Vec2::Zero(), Vec2::Constant(10.0)};
 
 // Nodes at random places, each below a random earlier one.
@@ -43,7 +46,7 @@ bool is_below(const Tree<Point2>& tree, int node, int ancestor) {
 
 TEST(Tree, PlantsARootWithoutParentAndCost) {
   InArena<Tree<Point2>> tree(8);
-  tree->reset({1.0, 2.0});
+  tree->reset(kRobot, {1.0, 2.0});
   EXPECT_EQ(tree->size(), 1);
   EXPECT_EQ(tree->parent(0), kNoNode);
   EXPECT_EQ(tree->cost(0), 0.0);
@@ -52,7 +55,7 @@ TEST(Tree, PlantsARootWithoutParentAndCost) {
 
 TEST(Tree, AddsUpCostsFromTheRoot) {
   InArena<Tree<Point2>> tree(8);
-  tree->reset(Vec2::Zero());
+  tree->reset(kRobot, Vec2::Zero());
   EXPECT_EQ(tree->try_add({3.0, 4.0}, 0), 1);
   EXPECT_EQ(tree->try_add({3.0, 5.0}, 1), 2);
   EXPECT_EQ(tree->cost(1), 5.0);
@@ -64,7 +67,7 @@ TEST(Tree, RefusesANodeBeyondItsCapacity) {
   for (const int capacity : {1, 7, 8, 9, 16, 17}) {
     InArena<Tree<Point2>> tree(capacity);
     Random random(1);
-    tree->reset(Vec2::Zero());
+    tree->reset(kRobot, Vec2::Zero());
     grow(random, capacity, *tree);
     EXPECT_TRUE(tree->full());
     EXPECT_EQ(tree->try_add(Vec2::Zero(), 0), kNoNode);
@@ -76,9 +79,9 @@ TEST(Tree, RefusesANodeBeyondItsCapacity) {
 TEST(Tree, ForgetsEverythingAtReset) {
   InArena<Tree<Point2>> tree(32);
   Random random(2);
-  tree->reset(Vec2::Zero());
+  tree->reset(kRobot, Vec2::Zero());
   grow(random, 32, *tree);
-  tree->reset({50.0, 50.0});
+  tree->reset(kRobot, {50.0, 50.0});
   NearNodes near;
   tree->find_near({1.0, 1.0}, 1000.0, near);
   EXPECT_EQ(tree->size(), 1);
@@ -127,7 +130,7 @@ TEST(Tree, FindsNeighboursAsBruteForceDoesInPartlyFilledLanes) {
   for (int size = 1; size <= 17; ++size) {
     InArena<Tree<Point2>> tree(size);
     for (int round = 0; round < 30; ++round) {
-      tree->reset(random.point(kBox));
+      tree->reset(kRobot, random.point(kBox));
       grow(random, size, *tree);
       check_near(*tree, random.point(kBox), random.uniform(0.0, 8.0));
       // Where padding would be if it were zeros.
@@ -139,7 +142,7 @@ TEST(Tree, FindsNeighboursAsBruteForceDoesInPartlyFilledLanes) {
 TEST(Tree, FindsNeighboursAsBruteForceDoesInLargeTrees) {
   Random random(4);
   InArena<Tree<Point2>> tree(3000);
-  tree->reset(random.point(kBox));
+  tree->reset(kRobot, random.point(kBox));
   for (const int size : {65, 500, 3000}) {
     grow(random, size, *tree);
     for (int round = 0; round < 50; ++round) {
@@ -152,7 +155,7 @@ TEST(Tree, FindsNeighboursAsBruteForceDoesInLargeTrees) {
 TEST(Tree, ListsNoNeighboursWithoutARadius) {
   Random random(5);
   InArena<Tree<Point2>> tree(100);
-  tree->reset(random.point(kBox));
+  tree->reset(kRobot, random.point(kBox));
   grow(random, 100, *tree);
   NearNodes near;
   tree->find_near({5.001, 5.002}, 0.0, near);
@@ -162,7 +165,7 @@ TEST(Tree, ListsNoNeighboursWithoutARadius) {
 
 TEST(Tree, LowersTheCostsOfAllDescendantsWhenRewired) {
   InArena<Tree<Point2>> tree(8);
-  tree->reset(Vec2::Zero());
+  tree->reset(kRobot, Vec2::Zero());
   (void)tree->try_add({0.0, 5.0}, 0);  // 1: detour
   (void)tree->try_add({3.0, 0.0}, 1);  // 2
   (void)tree->try_add({4.0, 0.0}, 2);  // 3
@@ -208,7 +211,7 @@ TEST(Tree, KeepsCostsExactInSmallTreesUnderRandomRewiring) {
   Random random(6);
   for (int round = 0; round < 50; ++round) {
     InArena<Tree<Point2>> tree(200);
-    tree->reset(random.point(kBox));
+    tree->reset(kRobot, random.point(kBox));
     grow(random, 200, *tree);
     rewire_at_random(random, 100, true, *tree);
   }
@@ -218,12 +221,37 @@ TEST(Tree, KeepsCostsUpperBoundsWhenPropagationIsCut) {
   Random random(7);
   for (int round = 0; round < 10; ++round) {
     InArena<Tree<Point2>> tree(2000);
-    tree->reset(random.point(kBox));
+    tree->reset(kRobot, random.point(kBox));
     // Long chains, so that one rewiring has more descendants than one propagation visits.
     while (tree->size() < 2000) {
       (void)tree->try_add(random.point(kBox), std::max(0, tree->size() - 1 - random.index(3)));
     }
     rewire_at_random(random, 300, false, *tree);
+  }
+}
+
+TEST(Tree, MeasuresJointsThatTurnWithoutEndTheShortWay) {
+  Random random(9);
+  for (int round = 0; round < 20; ++round) {
+    oracle::RandomArm<5> drawn;
+    oracle::draw_arm(random, drawn);
+    ASSERT_EQ(drawn.arm.reset(drawn.description), ArmStatus::kOk);
+    const auto draw = [&] { return oracle::random_configuration(random, drawn.arm); };
+    InArena<Tree<Arm<5>>> tree(100);
+    tree->reset(drawn.arm, draw());
+    while (tree->size() < 100) ASSERT_NE(tree->try_add(draw(), 0), kNoNode);
+    const auto q = draw();
+    NearNodes near;
+    tree->find_near(q, 1.5, near);
+    double least = 1e9;
+    int num_near = 0;
+    for (int i = 0; i < tree->size(); ++i) {
+      const double distance = drawn.arm.path_distance(tree->config(i), q);
+      least = std::min(least, distance);
+      num_near += distance < 1.5 ? 1 : 0;
+    }
+    EXPECT_NEAR(drawn.arm.path_distance(tree->config(near.nearest), q), least, 1e-5);
+    EXPECT_EQ(near.count, std::min(num_near, kMaxNeighbors));
   }
 }
 
