@@ -2,19 +2,25 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "opt/planner.h"
 #include "tools/cli/algorithm_options.h"
 #include "tools/cli/option_checks.h"
 #include "tools/cli/planner_host.h"
+#include "tools/io/arm_picture.h"
+#include "tools/io/html_page.h"
 #include "tools/io/input_error.h"
 #include "tools/io/json_text.h"
 #include "tools/io/output_file.h"
 #include "tools/io/plan_file.h"
+#include "tools/io/plan_page.h"
 #include "tools/io/plan_picture.h"
 #include "tools/io/plan_report.h"
 
@@ -23,34 +29,43 @@ namespace {
 
 struct PlanArguments {
   std::string scene;
-  std::string robot = "point2d";
+  std::string robot;  // the scene's when empty
   std::uint64_t seed = 1;
   std::optional<double> deadline_ms;
   AlgorithmOptions algorithm;
   int num_calls = 1;
   std::string plan_file;
   std::string svg_file;
+  std::string html_file;
   std::string csv_file;
 
   [[nodiscard]] std::vector<std::filesystem::path> outputs() const {
     std::vector<std::filesystem::path> files;
-    for (const std::string& file : {plan_file, svg_file, csv_file}) {
+    for (const std::string& file : {plan_file, svg_file, html_file, csv_file}) {
       if (!file.empty()) files.emplace_back(file);
     }
     return files;
   }
 };
 
-PlanRequest<Point2> make_request(const Scene& scene, const PlanArguments& arguments) {
-  PlanRequest<Point2> request = make_request(scene);
+// The fastest that --speed may ask for.
+double speed_limit(const Scene& scene) { return scene.robot.v_max_mps; }
+template <int N>
+double speed_limit(const ArmScene<N>& /*scene*/) {
+  return std::numeric_limits<double>::infinity();  // joints have limits of their own
+}
+
+template <class Robot>
+PlanRequest<Robot> make_request(const SceneOf<Robot>& scene, const PlanArguments& arguments) {
+  PlanRequest<Robot> request = make_request(scene);
   request.seed = arguments.seed;
   if (arguments.deadline_ms) request.deadline_s = *arguments.deadline_ms / 1000.0;
   PlanOptions& options = request.options;
   apply(arguments.algorithm, options);
-  if (options.speed_mps > scene.robot.v_max_mps) {
+  if (options.speed_mps > speed_limit(scene)) {
     throw InputError(format("--speed: %g is not allowed; it must be at most limits.v_max of %s, %g",
                             options.speed_mps, printable(scene.file.string(), 400).c_str(),
-                            scene.robot.v_max_mps));
+                            speed_limit(scene)));
   }
   if (options.margin_m < options.min_clearance_m) {
     throw InputError(format("--margin: %g is not allowed; it must be at least min_clearance, %g",
@@ -77,32 +92,57 @@ StageTimes medians(std::vector<StageTimes> calls) {
   return result;
 }
 
-std::string trajectory_to_csv(const PlanResult<Point2>& result) {
-  std::string text = "t_s,x_m,y_m,vx_mps,vy_mps\n";
+void add_columns(std::string& text, const char* name, const char* unit, int num) {
+  for (int i = 0; i < num; ++i) text += format(",%s%d_%s", name, i + 1, unit);
+}
+
+std::string csv_header(const Scene& /*scene*/) { return "t_s,x_m,y_m,vx_mps,vy_mps\n"; }
+template <int N>
+std::string csv_header(const ArmScene<N>& /*scene*/) {
+  std::string text = "t_s";
+  add_columns(text, "theta", "rad", N);
+  add_columns(text, "omega", "radps", N);
+  add_columns(text, "alpha", "radps2", N);
+  return text + '\n';
+}
+
+template <class Robot>
+std::string trajectory_to_csv(const SceneOf<Robot>& scene, const PlanResult<Robot>& result) {
+  std::string text = csv_header(scene);
   if (!result.plan) return text;
-  const Trajectory<Point2>& trajectory = result.plan->trajectory();
+  const Trajectory<Robot>& trajectory = result.plan->trajectory();
   for (int i = 0; i <= trajectory.horizon(); ++i) {
-    const Vec2& state = trajectory.states[i];
-    text += format("%.17g,%.17g,%.17g,", i * trajectory.dt_s, state.x(), state.y());
-    const bool is_last = i == trajectory.horizon();
-    text += is_last ? ",\n"
-                    : format("%.17g,%.17g\n", trajectory.inputs[i].x(), trajectory.inputs[i].y());
+    text += format("%.17g", i * trajectory.dt_s);
+    for (const double value : trajectory.states[i]) text += format(",%.17g", value);
+    for (int k = 0; k < static_cast<int>(Robot::Input::SizeAtCompileTime); ++k) {
+      text += i == trajectory.horizon() ? "," : format(",%.17g", trajectory.inputs[i][k]);
+    }
+    text += '\n';
   }
   return text;
 }
 
-int run_plan(const PlanArguments& arguments) {
-  const std::vector<std::filesystem::path> outputs = arguments.outputs();
-  check_outputs(outputs, {arguments.scene});
-  const Scene scene = load_scene(arguments.scene);
-  const PlanRequest<Point2> request = make_request(scene, arguments);
-  const auto host = std::make_unique<PlannerHost>(scene, request.options);
-  Planner<Point2>& planner = host->planner();
+// The picture of the plane is a map, that of space an isometric view.
+std::string draw_plan(const Scene& scene, const Planner<Point2>& planner,
+                      const PlanResult<Point2>& result, const StageTimes& times) {
+  return draw(picture_of(scene, planner, result, times));
+}
+template <int N>
+std::string draw_plan(const ArmScene<N>& scene, const Planner<Arm<N>>& /*planner*/,
+                      const PlanResult<Arm<N>>& result, const StageTimes& times) {
+  return draw(picture_of(scene, result, times));
+}
+
+template <class Robot>
+int plan_scene(const PlanArguments& arguments, const SceneOf<Robot>& scene) {
+  const PlanRequest<Robot> request = make_request<Robot>(scene, arguments);
+  const auto host = std::make_unique<PlannerHost<Robot>>(scene, request.options);
+  Planner<Robot>& planner = host->planner();
 
   std::vector<StageTimes> calls;
-  PlanResult<Point2> result;
+  PlanResult<Robot> result;
   for (int i = 0; i < arguments.num_calls; ++i) {
-    result = PlanResult<Point2>{};  // gives the slot back
+    result = PlanResult<Robot>{};  // gives the slot back
     result = planner.plan(request);
     calls.push_back(result.times);
   }
@@ -110,16 +150,19 @@ int run_plan(const PlanArguments& arguments) {
 
   std::vector<OutputFile> files;
   if (!arguments.plan_file.empty()) {
-    files.push_back({arguments.plan_file, plan_to_text(scene, request, result, times)});
+    files.push_back({arguments.plan_file, plan_to_text<Robot>(scene, request, result, times)});
   }
   if (!arguments.svg_file.empty()) {
-    files.push_back({arguments.svg_file, draw(picture_of(scene, planner, result, times))});
+    files.push_back({arguments.svg_file, draw_plan(scene, planner, result, times)});
+  }
+  if (!arguments.html_file.empty()) {
+    files.push_back({arguments.html_file, html_page(page_of(scene, request, result, times))});
   }
   if (!arguments.csv_file.empty()) {
-    files.push_back({arguments.csv_file, trajectory_to_csv(result)});
+    files.push_back({arguments.csv_file, trajectory_to_csv<Robot>(scene, result)});
   }
   write_files(files);
-  std::string text = describe_plan(scene, result, times, arguments.num_calls);
+  std::string text = describe_plan<Robot>(scene, result, times, arguments.num_calls);
   for (const OutputFile& file : files) {
     text +=
         (&file == &files.front() ? "  wrote         " : ", ") + printable(file.file.string(), 400);
@@ -129,11 +172,21 @@ int run_plan(const PlanArguments& arguments) {
   return result.plan ? 0 : 1;
 }
 
+int run_plan(const PlanArguments& arguments) {
+  check_outputs(arguments.outputs(), {arguments.scene, arguments.robot});
+  const AnyScene any = load_any_scene(arguments.scene, arguments.robot);
+  return std::visit(
+      [&](const auto& scene) {
+        return plan_scene<std::decay_t<decltype(robot_of(scene))>>(arguments, scene);
+      },
+      any);
+}
+
 void add_request_options(CLI::App& command, PlanArguments& arguments) {
   constexpr NumberRule kDeadline{1e-6, 1e9, "a number > 0, from 1e-6 to 1e9"};
-  command.add_option("--robot", arguments.robot, "Robot of the scene")
-      ->type_name("NAME")
-      ->check(word_check({"point2d"}));
+  command.add_option("--robot", arguments.robot, "Robot in place of the scene's")
+      ->type_name("NAME|FILE")
+      ->check(file_check());
   command.add_option("--seed", arguments.seed, "Seed of the random numbers [1]")
       ->type_name("N")
       ->check(integer_check(0, UINT64_MAX));
@@ -159,6 +212,11 @@ void add_plan_command(CLI::App& app, int& exit_code) {
       ->type_name("PLAN.json")
       ->check(file_check());
   command->add_option("--svg", arguments->svg_file, "Draw the plan")
+      ->type_name("FILE")
+      ->check(file_check());
+  command
+      ->add_option("--html", arguments->html_file,
+                   "Show the plan in a page of its own: scene, motion, plots")
       ->type_name("FILE")
       ->check(file_check());
   command->add_option("--csv", arguments->csv_file, "Write the trajectory as a table")

@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "models/config.h"
 #include "tools/cli/option_checks.h"
 #include "tools/io/json_fields.h"
 #include "tools/io/json_text.h"
 #include "tools/io/output_file.h"
+#include "tools/io/plan_report.h"
 #include "tools/io/robot_file.h"
 #include "tools/io/urdf_robot.h"
 
@@ -62,7 +64,8 @@ std::string describe(const UrdfRobot& robot) {
   std::string text = printable(robot.model.name) + ", " + std::to_string(robot.model.links.size()) +
                      " links, " + std::to_string(robot.model.joints.size()) + " joints\n";
   text += "  active joints: " + (names.empty() ? "none" : names) + '\n';
-  text += "  acceleration limits: 5 x velocity limit per second, URDF has none\n";
+  text += format("  acceleration limits: %g x velocity limit per second, URDF has none\n",
+                 kAccelerationPerVelocity);
   text += "  self-collision: links that are no neighbours and apart at home\n";
   for (const CapsuleApproximation& a : robot.approximations) text += describe(a);
   return text;

@@ -22,6 +22,7 @@ full_test_packages=(
   clang=clang++
   clang-tidy=clang-tidy
   clang-format-14=clang-format-14
+  chromium=chromium
 )
 
 say() { printf '== %s\n' "$*"; }

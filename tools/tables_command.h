@@ -1,4 +1,4 @@
-// `sopt tables plane`: the planar table and figures of the paper made again (tools/tables).
+// `sopt tables plane|arm`: the paper's tables and figures made again (tools/tables).
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -382,7 +382,7 @@ TEST_F(VerifyCliTest, NamesAStepThatDoesNotFollow) {
   plan_["inputs"][1] = {8, 0.001};
   EXPECT_EQ(rejection(),
             "  the next state does not follow from the input at 2 s (step 1): defect "
-            "0.001 m, at most 1e-09 m allowed");
+            "0.001 m, at most 1e-09 allowed");
 }
 
 TEST_F(VerifyCliTest, NamesAStepThatIsTooFast) {
@@ -411,25 +411,27 @@ TEST_F(VerifyCliTest, SaysWhenThePlanIsOfAnotherScene) {
 
 // --- public scenes, where they are at hand
 
-TEST_F(CliTest, SharedPlanarScenesPlanAndVerify) {
+TEST_F(CliTest, SharedScenesPlanAndVerify) {
   const std::filesystem::path folder =
       std::filesystem::path(SOPT_SOURCE_DIR) / "../shared/data/scenes";
   if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << folder << " is absent";
-  int num_scenes = 0;
+  int num_planar = 0;
+  int num_arms = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string scene = "'" + entry.path().string() + "'";
-    if (json::parse(read_file(entry.path()))["robot"] != "point2d") {
-      const ProgramRun refused = run("plan " + scene);
-      EXPECT_EQ(refused.exit_code, 2) << scene;
-      EXPECT_NE(refused.err.find("it must be \"point2d\", the only robot supported"),
-                std::string::npos);
+    const json document = json::parse(read_file(entry.path()));
+    if (document.contains("base_model")) {
+      EXPECT_EQ(run("plan " + scene).exit_code, 2) << scene << ": mobile manipulators";
       continue;
     }
-    ++num_scenes;
-    EXPECT_EQ(run("plan " + scene + " -o plan.json --svg plan.svg").exit_code, 0) << scene;
+    const bool is_planar = document["robot"] == "point2d";
+    ++(is_planar ? num_planar : num_arms);
+    const std::string picture = is_planar ? " --svg plan.svg" : "";
+    EXPECT_EQ(run("plan " + scene + " -o plan.json" + picture).exit_code, 0) << scene;
     EXPECT_EQ(run("verify " + scene + " plan.json").exit_code, 0) << scene;
   }
-  EXPECT_EQ(num_scenes, 10);
+  EXPECT_EQ(num_planar, 10);
+  EXPECT_EQ(num_arms, 28);
 }
 
 }  // namespace

@@ -6,11 +6,11 @@
 #include <limits>
 #include <memory>
 
+#include "tools/bench/bench_scenes.h"
 #include "tools/bench/bench_statistics.h"
 #include "tools/cli/planner_host.h"
 #include "tools/io/line_chart.h"
 #include "tools/io/plan_report.h"
-#include "tools/io/scene_file.h"
 
 namespace sopt {
 namespace {
@@ -21,7 +21,8 @@ constexpr std::size_t kMaxSeriesPerChart = 7;
 constexpr const char* kBestSeenNote =
     "* without a reference: relative to the best plan of all seeds";
 
-ImproveCase to_case(std::uint64_t seed, const PlanResult<Point2>& result) {
+template <class Robot>
+ImproveCase to_case(std::uint64_t seed, const PlanResult<Robot>& result) {
   ImproveCase c;
   c.seed = seed;
   c.status = result.status;
@@ -33,10 +34,11 @@ ImproveCase to_case(std::uint64_t seed, const PlanResult<Point2>& result) {
   return c;
 }
 
-ImproveScene run_scene(const Scene& scene, const BenchImproveOptions& options) {
-  ImproveScene run{scene.name, scene.reference_feasible_length, {}};
-  PlanRequest<Point2> request = make_request(scene);
-  const auto host = std::make_unique<PlannerHost>(scene, request.options, options.clock);
+template <class Robot>
+ImproveScene run_scene(const SceneOf<Robot>& scene, const BenchImproveOptions& options) {
+  ImproveScene run{scene.name, reference_of(scene), {}};
+  PlanRequest<Robot> request = make_request(scene);
+  const auto host = std::make_unique<PlannerHost<Robot>>(scene, request.options, options.clock);
   (void)host->planner().plan(request);
   request.options.improve_s = 1e-3 * options.budgets_ms.back();
   for (int seed = 1; seed <= options.num_seeds; ++seed) {
@@ -95,7 +97,7 @@ std::string cell(const std::optional<double>& value) {
 }
 
 std::string row_name(const ImproveScene& scene) {
-  return scene.name + (scene.reference_feasible_length ? "" : " *");
+  return scene.name + (scene.reference_length ? "" : " *");
 }
 
 std::string describe(const Table& table, const std::vector<ImproveScene>& scenes,
@@ -134,11 +136,10 @@ nlohmann::ordered_json case_json(const ImproveCase& c) {
 
 nlohmann::ordered_json scene_json(const ImproveScene& scene,
                                   const std::vector<double>& budgets_ms) {
-  nlohmann::ordered_json object = {
-      {"scene", scene.name},
-      {"unit_length", to_json(scene.unit_length())},
-      {"unit", scene.reference_feasible_length ? "reference_feasible_length" : "best_seen"},
-      {"planned", scene.num_planned()}};
+  nlohmann::ordered_json object = {{"scene", scene.name},
+                                   {"unit_length", to_json(scene.unit_length())},
+                                   {"unit", scene.reference_length ? "reference" : "best_seen"},
+                                   {"planned", scene.num_planned()}};
   for (const double budget_ms : budgets_ms) {
     const auto outcome = outcome_of(scene, budget_ms);
     object["median"].push_back(outcome ? to_json(outcome->median) : nullptr);
@@ -170,7 +171,7 @@ void add_to_chart(const ImproveScene& scene, const std::vector<double>& budgets_
   }
   chart.series.push_back(series);
   std::vector<std::string>& notes = chart.notes;
-  if (!scene.reference_feasible_length &&
+  if (!scene.reference_length &&
       std::find(notes.begin(), notes.end(), kBestSeenNote) == notes.end()) {
     notes.insert(notes.begin(), kBestSeenNote);
   }
@@ -189,7 +190,7 @@ int ImproveScene::num_planned() const {
 }
 
 std::optional<double> ImproveScene::unit_length() const {
-  if (reference_feasible_length) return reference_feasible_length;
+  if (reference_length) return reference_length;
   double best = std::numeric_limits<double>::infinity();
   for (const ImproveCase& c : cases) {
     if (!c.improvements.empty()) best = std::min(best, c.improvements.back().path_length);
@@ -199,12 +200,16 @@ std::optional<double> ImproveScene::unit_length() const {
   return best;
 }
 
-std::vector<ImproveScene> run_bench_improve(const std::vector<std::filesystem::path>& scenes,
+std::vector<ImproveScene> run_bench_improve(const std::vector<std::filesystem::path>& files,
                                             const BenchImproveOptions& options) {
   std::vector<ImproveScene> runs;
-  for (const std::filesystem::path& file : scenes) {
-    const Scene scene = load_scene(file);
-    runs.push_back(run_scene(scene, options));
+  const BenchScenes scenes = load_bench_scenes(files);
+  for (const AnyScene& any : scenes.scenes) {
+    std::visit(
+        [&](const auto& scene) {
+          runs.push_back(run_scene<RobotOf<std::decay_t<decltype(scene)>>>(scene, options));
+        },
+        any);
   }
   return runs;
 }
@@ -237,7 +242,7 @@ std::string describe(const std::vector<ImproveScene>& scenes,
   bool has_best_seen = false;
   for (const ImproveScene& scene : scenes) {
     name_width = std::max(name_width, row_name(scene).size());
-    has_best_seen = has_best_seen || !scene.reference_feasible_length;
+    has_best_seen = has_best_seen || !scene.reference_length;
   }
   std::string text = "length of the plan, relative to the reference, by budget [ms]\n";
   if (has_best_seen) text += std::string(kBestSeenNote) + '\n';

@@ -2,8 +2,8 @@
 // may look for other ways after its first plan. Every scene is planned once per seed, with the
 // largest budget; what smaller ones would have left is read off the record of improvements: the
 // last plan at most `budget` after the first. (A search that ends there also takes the plan it is
-// at, cut short.) Lengths are relative to the scene's reference_feasible_length, else to the best
-// plan of the scene over all seeds.
+// at, cut short.) Lengths are relative to that of the scene's known path, else to the best plan of
+// the scene over all seeds.
 #pragma once
 
 #include <cstdint>
@@ -36,17 +36,17 @@ struct ImproveCase {
 
 struct ImproveScene {
   std::string name;
-  std::optional<double> reference_feasible_length;
+  std::optional<double> reference_length;  // of a known path
   std::vector<ImproveCase> cases;
 
   [[nodiscard]] int num_planned() const;
-  // What lengths are relative to, m; none without a reference and without a plan.
+  // What lengths are relative to; none without a reference and without a plan.
   [[nodiscard]] std::optional<double> unit_length() const;
 };
 
-// One call to warm up per scene. Throws what load_scene and PlannerHost throw.
+// One call to warm up per scene. Throws what load_bench_scenes and PlannerHost throw.
 [[nodiscard]] std::vector<ImproveScene> run_bench_improve(
-    const std::vector<std::filesystem::path>& scenes, const BenchImproveOptions& options);
+    const std::vector<std::filesystem::path>& files, const BenchImproveOptions& options);
 
 // Relative lengths `budget_ms` after the first plan, in the order of the cases that have one.
 [[nodiscard]] std::vector<double> length_ratios(const ImproveScene& scene, double budget_ms);

@@ -1,5 +1,5 @@
 // The measurement behind `sopt bench plan`: every scene with every seed, on a planner that was
-// warmed up by one call.
+// warmed up by one call. Robots of the scenes may differ (bench_scenes.h).
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 
 #include "models/config.h"
 #include "opt/planner.h"
+#include "tools/bench/bench_scenes.h"
 #include "tools/cli/algorithm_options.h"
 
 namespace sopt {
@@ -26,9 +27,10 @@ struct BenchCase {
   std::string scene;
   std::uint64_t seed = 0;
   PlanStatus status = PlanStatus::kBadInput;
+  bool has_path = false;  // from the sampler
   StageTimes times;
-  double sampler_path_length_m = 0.0;
-  double path_length_m = 0.0;
+  double sampler_path_length = 0.0;  // in the path metric, as path_length
+  double path_length = 0.0;
   double cost = 0.0;
   double duration_s = 0.0;
   int horizon = 0;
@@ -38,7 +40,8 @@ struct BenchCase {
   bool fell_back = false;  // the optimiser's result was refused
   SamplerCounts sampler_counts;
   OptimizerCounts optimizer_counts;
-  double reference_ratio = 0.0;  // path length / reference_feasible_length; 0: the scene has none
+  std::int64_t num_allocations = 0;
+  double reference_ratio = 0.0;  // path length / that of a known path; 0: the scene has none
   // Relative to 200 sweeps; 0: not compared.
   double cost_ratio = 0.0;
   double length_ratio = 0.0;
@@ -46,12 +49,13 @@ struct BenchCase {
 };
 
 struct BenchRun {
+  SceneKind kind = SceneKind::kPlane;
   std::vector<BenchCase> cases;
   std::vector<double> world_build_us;  // one per scene: emptied, obstacles added, broad phase
 };
 
-// Throws what load_scene and PlannerHost throw.
-[[nodiscard]] BenchRun run_bench(const std::vector<std::filesystem::path>& scenes,
+// Throws what load_bench_scenes and PlannerHost throw.
+[[nodiscard]] BenchRun run_bench(const std::vector<std::filesystem::path>& files,
                                  const BenchPlanOptions& options);
 
 }  // namespace sopt

@@ -49,16 +49,18 @@ Metric ratio_metric(const char* name, double BenchCase::*ratio) {
           [ratio](const BenchCase& c) { return c.*ratio > 0.0; }};
 }
 
-std::vector<Metric> metrics() {
+std::vector<Metric> metrics(SceneKind kind) {
+  const char* const unit = length_unit(kind);
   return {
       time_metric("total", &StageTimes::total_ns),
+      time_metric("first_path", &StageTimes::first_path_ns),
       time_metric("sample", &StageTimes::sample_ns),
       time_metric("shortcut", &StageTimes::shortcut_ns),
       time_metric("reference", &StageTimes::reference_ns),
       time_metric("optimise", &StageTimes::optimize_ns),
       time_metric("verify", &StageTimes::verify_ns),
-      case_metric("path_length", "m", &BenchCase::path_length_m),
-      case_metric("sampler_path_length", "m", &BenchCase::sampler_path_length_m),
+      case_metric("path_length", unit, &BenchCase::path_length),
+      case_metric("sampler_path_length", unit, &BenchCase::sampler_path_length),
       case_metric("cost", "", &BenchCase::cost),
       case_metric("duration", "s", &BenchCase::duration_s),
       case_metric("horizon", "steps", &BenchCase::horizon),
@@ -72,6 +74,8 @@ std::vector<Metric> metrics() {
                    &OptimizerCounts::clearance_queries),
       count_metric("qp_solves", &BenchCase::optimizer_counts, &OptimizerCounts::qp_solves),
       count_metric("qp_steps", &BenchCase::optimizer_counts, &OptimizerCounts::qp_steps),
+      {"allocations", "",
+       [](const BenchCase& c) { return static_cast<double>(c.num_allocations); }},
       ratio_metric("length / reference", &BenchCase::reference_ratio),
       ratio_metric("f / f(200 sweeps)", &BenchCase::cost_ratio),
       ratio_metric("length / (200 sweeps)", &BenchCase::length_ratio),
@@ -97,10 +101,12 @@ nlohmann::ordered_json to_json(const Distribution& d) {
           {"p95", d.p95},     {"p99", d.p99},   {"max", d.max}};
 }
 
-nlohmann::ordered_json to_json(const BenchCase& c) {
-  nlohmann::ordered_json entry = {
-      {"scene", c.scene}, {"seed", c.seed}, {"status", to_string(c.status)}};
-  for (const Metric& metric : metrics()) {
+nlohmann::ordered_json to_json(const BenchCase& c, const std::vector<Metric>& metrics) {
+  nlohmann::ordered_json entry = {{"scene", c.scene},
+                                  {"seed", c.seed},
+                                  {"status", to_string(c.status)},
+                                  {"has_path", c.has_path}};
+  for (const Metric& metric : metrics) {
     if (metric.holds(c)) entry[metric.name] = metric.value(c);
   }
   return entry;
@@ -108,7 +114,7 @@ nlohmann::ordered_json to_json(const BenchCase& c) {
 
 nlohmann::ordered_json summary_json(const BenchRun& run) {
   nlohmann::ordered_json summary;
-  for (const Metric& metric : metrics()) {
+  for (const Metric& metric : metrics(run.kind)) {
     const Distribution d = measure(run, metric);
     if (d.count > 0) summary[metric.name] = to_json(d);
   }
@@ -119,18 +125,22 @@ nlohmann::ordered_json summary_json(const BenchRun& run) {
 std::vector<std::pair<std::string, BenchRun>> by_scene(const BenchRun& run) {
   std::vector<std::pair<std::string, BenchRun>> groups;
   for (const BenchCase& c : run.cases) {
-    if (groups.empty() || groups.back().first != c.scene) groups.push_back({c.scene, {}});
+    if (groups.empty() || groups.back().first != c.scene) {
+      groups.push_back({c.scene, {run.kind, {}, {}}});
+    }
     groups.back().second.cases.push_back(c);
   }
   return groups;
 }
 
-nlohmann::ordered_json to_json(const BenchPlanOptions& options) {
+nlohmann::ordered_json to_json(const BenchPlanOptions& options, SceneKind kind) {
   nlohmann::ordered_json document = {{"clock", options.cpu_time ? "cpu" : "elapsed"},
                                      {"seeds", options.num_seeds},
                                      {"repeat", options.num_repeats},
                                      {"converged", options.compare_converged}};
-  document.update(to_json(options.algorithm));
+  document.update(kind == SceneKind::kPlane
+                      ? to_json(options.algorithm)
+                      : to_json(options.algorithm, PlanOptions::arm(), PlanOptions::paper_arm()));
   return document;
 }
 
@@ -169,19 +179,27 @@ int num_failures(const BenchRun& run) {
                                         [](const BenchCase& c) { return !succeeded(c); }));
 }
 
+int num_without_path(const BenchRun& run) {
+  return static_cast<int>(std::count_if(run.cases.begin(), run.cases.end(),
+                                        [](const BenchCase& c) { return !c.has_path; }));
+}
+
 std::string describe_run(const BenchRun& run) {
   std::string text = format("%-24s %6s %10s %10s %10s %10s %10s\n", "", "n", "mean", "median",
                             "p95", "p99", "max");
-  for (const Metric& metric : metrics()) {
+  for (const Metric& metric : metrics(run.kind)) {
     const Distribution d = measure(run, metric);
     const std::string unit = *metric.unit == '\0' ? "" : std::string(" [") + metric.unit + ']';
     if (d.count > 0) text += table_line(metric.name + unit, d);
   }
   text += table_line("world build [us]", summarize(run.world_build_us));
-  const int failures = num_failures(run);
   const auto total = static_cast<int>(run.cases.size());
-  text += format("success %d of %d (%.2f %%)\n", total - failures, total,
-                 100.0 * (total - failures) / std::max(total, 1));
+  const auto share_line = [total](const char* name, int missing) {
+    return format("%s %d of %d (%.2f %%)\n", name, total - missing, total,
+                  100.0 * (total - missing) / std::max(total, 1));
+  };
+  text += share_line("first path", num_without_path(run));
+  text += share_line("success", num_failures(run));
   for (const BenchCase& c : run.cases) {
     if (succeeded(c)) continue;
     text += format("  failed: %s seed %llu: %s\n", c.scene.c_str(),
@@ -193,8 +211,10 @@ std::string describe_run(const BenchRun& run) {
 nlohmann::ordered_json to_json(const BenchRun& run, const BenchPlanOptions& options) {
   nlohmann::ordered_json document = {{"schema", 1},
                                      {"machine", describe_machine()},
-                                     {"options", to_json(options)},
+                                     {"options", to_json(options, run.kind)},
+                                     {"length_unit", length_unit(run.kind)},
                                      {"cases_total", run.cases.size()},
+                                     {"cases_without_path", num_without_path(run)},
                                      {"cases_failed", num_failures(run)},
                                      {"summary", summary_json(run)}};
   document["summary"]["world_build"] = to_json(summarize(run.world_build_us));
@@ -204,32 +224,35 @@ nlohmann::ordered_json to_json(const BenchRun& run, const BenchPlanOptions& opti
                                   {"cases_failed", num_failures(cases)},
                                   {"summary", summary_json(cases)}});
   }
-  for (const BenchCase& c : run.cases) document["cases"].push_back(to_json(c));
+  const std::vector<Metric> all = metrics(run.kind);
+  for (const BenchCase& c : run.cases) document["cases"].push_back(to_json(c, all));
   return document;
 }
 
 std::string describe_by_segments(const std::vector<SegmentsRun>& runs) {
+  const SceneKind kind = runs.empty() ? SceneKind::kPlane : runs.front().run.kind;
+  const std::string length_name = format("length [%s]", length_unit(kind));
   std::string text =
       format("%-9s %12s %12s %12s %12s %12s %12s %9s\n", "segments", "begun with", "ended with",
-             "length [m]", "cost", "iterations", "total [us]", "failures");
-  double shortest_m = std::numeric_limits<double>::infinity();
-  double longest_m = 0.0;
+             length_name.c_str(), "cost", "iterations", "total [us]", "failures");
+  double shortest = std::numeric_limits<double>::infinity();
+  double longest = 0.0;
   for (const SegmentsRun& entry : runs) {
     const auto mean = [&entry](const auto& value) {
       return measure(entry.run, case_metric("", "", value)).mean;
     };
-    const double length_m = mean(&BenchCase::path_length_m);
-    shortest_m = std::min(shortest_m, length_m);
-    longest_m = std::max(longest_m, length_m);
+    const double length = mean(&BenchCase::path_length);
+    shortest = std::min(shortest, length);
+    longest = std::max(longest, length);
     text += format("%-9s %12.3f %12.3f %12.4f %12.4f %12.3f %12.1f %9d\n",
                    entry.options.algorithm.segments.c_str(), mean(&BenchCase::segments_initial),
-                   mean(&BenchCase::segments_final), length_m, mean(&BenchCase::cost),
+                   mean(&BenchCase::segments_final), length, mean(&BenchCase::cost),
                    mean(&BenchCase::iterations),
                    measure(entry.run, time_metric("", &StageTimes::total_ns)).mean,
                    num_failures(entry.run));
   }
-  if (shortest_m > 0.0) {
-    text += format("spread of the mean length: %.3f %%\n", 100.0 * (longest_m / shortest_m - 1.0));
+  if (shortest > 0.0) {
+    text += format("spread of the mean length: %.3f %%\n", 100.0 * (longest / shortest - 1.0));
   }
   return text;
 }

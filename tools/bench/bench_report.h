@@ -27,7 +27,9 @@ struct SegmentsRun {
 // One document per run.
 [[nodiscard]] nlohmann::ordered_json to_json(const std::vector<SegmentsRun>& runs);
 
-// Runs without a usable plan.
+// Cases in which the sampler found no path.
+[[nodiscard]] int num_without_path(const BenchRun& run);
+// Cases without a usable plan.
 [[nodiscard]] int num_failures(const BenchRun& run);
 
 }  // namespace sopt

@@ -77,8 +77,8 @@ class KnownWayPlanner {
     CounterRng rng(request_->seed);
     shortcut_path(checker, rng, Deadline(), parts_.path);
     const std::int64_t reference_ns = clock_.now_ns();
-    result.is_planned =
-        make_reference(parts_.path, profile.step_length, options.dt_s, parts_.trajectory);
+    result.is_planned = make_reference(scene_->robot, parts_.path, profile.step_length,
+                                       options.dt_s, parts_.trajectory);
     const std::int64_t optimize_ns = clock_.now_ns();
     const OptimizerResult<Point2> optimized = parts_.optimizer.optimize(
         {&scene_->robot, scene_->world.get(), profile, profile.step_length, &options},
@@ -141,7 +141,8 @@ ScalingCase run_case(ScalingFamily family, int size, std::uint64_t seed,
   result.size = size;
   result.seed = seed;
   result.num_obstacles = made.scene.world->num_obstacles();
-  const auto host = std::make_unique<PlannerHost>(made.scene, request.options, options.clock);
+  const auto host =
+      std::make_unique<PlannerHost<Point2>>(made.scene, request.options, options.clock);
   result.plan =
       measure(options.num_repeats, [&] { return to_plan(host->planner().plan(request)); });
   if (made.way.empty()) return result;

@@ -36,6 +36,7 @@ const Words<Resampling>& resamplings() {
 
 const Words<MergeRule>& merge_rules() {
   static const Words<MergeRule> words = {{"paired", MergeRule::kPaired},
+                                         {"eager", MergeRule::kEager},
                                          {"printed", MergeRule::kPrinted}};
   return words;
 }
@@ -85,12 +86,14 @@ void add_optimizer_options(CLI::App& command, AlgorithmOptions& options) {
   command.add_option("--segments", options.segments, "Segments to begin with [auto]")
       ->type_name("N|auto")
       ->check(integer_or_word_check(1, kMaxSegments, "auto"));
-  command.add_option("--max-window", options.max_window, "Longest window in steps [60]")
+  command.add_option("--max-window", options.max_window, "Longest window in steps [60; arms 160]")
       ->type_name("N")
       ->check(integer_check(4, kLongestWindow));
-  command.add_flag("--no-merge", options.no_merge, "Keep the segments as they are");
-  add_words(command, "--merge-rule", options.merge_rule, merge_rules(),
-            "paired: other windows keep their parity; printed: as in the paper [paired]");
+  command.add_flag("--no-merge", options.no_merge, "Do not merge segments");
+  add_words(
+      command, "--merge-rule", options.merge_rule, merge_rules(),
+      "paired: other windows keep their parity; eager: the same after any whole step; printed: "
+      "as in the paper [paired; arms eager]");
   add_words(command, "--rows", options.rows, row_modes(),
             "Obstacles that a window keeps clear of: near its edges, near its waypoints, or the "
             "nearest one of each waypoint [edge]");
@@ -106,7 +109,8 @@ void add_optimizer_options(CLI::App& command, AlgorithmOptions& options) {
                    "The paper's choices, in windows of 30 steps: --sampler rrt_star --no-shortcut "
                    "--no-lattice --rows label_map --qp dense --start zero_input --no-accept "
                    "--merge-rule printed --resample "
-                   "rediscretise; options given beside it win");
+                   "rediscretise; for arms --rows waypoint --resample off; options given beside it "
+                   "win");
 }
 
 template <class Value>
@@ -129,6 +133,7 @@ void take_choices(const PlanOptions& from, PlanOptions& plan) {
   chosen.dt_s = plan.dt_s;
   chosen.margin_m = plan.margin_m;
   chosen.min_clearance_m = plan.min_clearance_m;
+  chosen.num_batches = plan.num_batches;
   plan = chosen;
 }
 
@@ -142,19 +147,21 @@ void add_algorithm_options(CLI::App& command, AlgorithmOptions& options) {
                   "After the first plan, search for shorter ones this long [0]")
       ->type_name("T")
       ->check(number_check({0.0, 1e9, "a number from 0 to 1e9"}));
-  command.add_option("--margin", options.margin_m, "Clearance wanted, m [0.05]")
+  command.add_option("--margin", options.margin_m, "Clearance wanted, m [0.05; arms 0.02]")
       ->type_name("M")
       ->check(number_check(kNotNegative));
-  command.add_option("--speed", options.speed_mps, "Operating speed, m/s [from the bounds]")
+  command
+      .add_option("--speed", options.speed_mps,
+                  "Operating speed, m/s [from the bounds]; of arms, rad/s [1]")
       ->type_name("V")
       ->check(number_check(kPositive));
-  command.add_option("--dt", options.dt_s, "Time step, s [0.1]")
+  command.add_option("--dt", options.dt_s, "Time step, s [0.1; arms 0.05]")
       ->type_name("T")
       ->check(number_check(kPositive));
 }
 
-void apply(const AlgorithmOptions& options, PlanOptions& plan) {
-  if (options.paper) take_choices(PlanOptions::paper(), plan);
+void apply(const AlgorithmOptions& options, PlanOptions& plan, const PlanOptions& paper) {
+  if (options.paper) take_choices(paper, plan);
   plan.num_samples = options.num_samples.value_or(plan.num_samples);
   plan.num_streams = options.num_streams.value_or(plan.num_streams);
   if (options.segments != "auto") plan.num_segments = std::stoi(options.segments);
@@ -175,9 +182,10 @@ void apply(const AlgorithmOptions& options, PlanOptions& plan) {
   plan.dt_s = options.dt_s.value_or(plan.dt_s);
 }
 
-nlohmann::ordered_json to_json(const AlgorithmOptions& options) {
-  PlanOptions plan;
-  apply(options, plan);
+nlohmann::ordered_json to_json(const AlgorithmOptions& options, const PlanOptions& defaults,
+                               const PlanOptions& paper) {
+  PlanOptions plan = defaults;
+  apply(options, plan, paper);
   return {{"samples", to_json(options.num_samples)},
           {"streams", to_json(options.num_streams)},
           {"sampler", word_of(samplers(), plan.sampler)},

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "models/config.h"
+#include "models/point2.h"
 
 namespace sopt {
 
@@ -34,10 +35,24 @@ struct AlgorithmOptions {
 // Registers the options; `options` must live as long as `command`.
 void add_algorithm_options(CLI::App& command, AlgorithmOptions& options);
 
-// Puts what was given over `plan`; each option also over what --paper chooses.
-void apply(const AlgorithmOptions& options, PlanOptions& plan);
+// What --paper chooses.
+template <class Robot>
+[[nodiscard]] constexpr PlanOptions paper_options() {
+  return PlanOptions::paper_arm();
+}
+template <>
+[[nodiscard]] constexpr PlanOptions paper_options<Point2>() {
+  return PlanOptions::paper();
+}
 
-// Everything that they choose, for reports; null where the scene's value or the default holds.
-[[nodiscard]] nlohmann::ordered_json to_json(const AlgorithmOptions& options);
+// Puts what was given over `plan`; each option also over what --paper chooses.
+void apply(const AlgorithmOptions& options, PlanOptions& plan,
+           const PlanOptions& paper = paper_options<Point2>());
+
+// Everything that they choose over `defaults`, for reports; null where the scene's value or the
+// default holds.
+[[nodiscard]] nlohmann::ordered_json to_json(const AlgorithmOptions& options,
+                                             const PlanOptions& defaults = {},
+                                             const PlanOptions& paper = paper_options<Point2>());
 
 }  // namespace sopt

@@ -7,33 +7,37 @@
 #include "rt/executor.h"
 #include "tools/io/input_error.h"
 #include "tools/io/plan_report.h"
-#include "tools/io/scene_file.h"
+#include "tools/io/robot_scene.h"
 
 namespace sopt {
 
+template <class Robot>
 class PlannerHost {
  public:
   // Sized for requests on `scene` with `options`. Throws HostError when there is no memory.
-  PlannerHost(const Scene& scene, const PlanOptions& options, Clock clock = monotonic_clock())
+  PlannerHost(const SceneOf<Robot>& scene, const PlanOptions& options,
+              Clock clock = monotonic_clock())
       : PlannerHost(scene, options, nullptr, clock) {}
   // With the caller's executor, which outlives it.
-  PlannerHost(const Scene& scene, const PlanOptions& options, Executor& executor, Clock clock)
+  PlannerHost(const SceneOf<Robot>& scene, const PlanOptions& options, Executor& executor,
+              Clock clock)
       : PlannerHost(scene, options, &executor, clock) {}
 
-  [[nodiscard]] Planner<Point2>& planner() { return planner_; }
+  [[nodiscard]] Planner<Robot>& planner() { return planner_; }
 
  private:
-  PlannerHost(const Scene& scene, const PlanOptions& options, Executor* executor, Clock clock)
+  PlannerHost(const SceneOf<Robot>& scene, const PlanOptions& options, Executor* executor,
+              Clock clock)
       : settings_(make_settings(scene, options)),
-        memory_(Planner<Point2>::required_bytes(settings_)),
+        memory_(Planner<Robot>::required_bytes(settings_)),
         arena_(memory_),
-        planner_(arena_, scene.robot, settings_,
+        planner_(arena_, robot_of(scene), settings_,
                  executor == nullptr ? static_cast<Executor&>(serial_) : *executor, clock) {
     if (arena_.exhausted()) {
       throw HostError(
           format("the host has no %zu MiB of memory for the planner; smaller --samples "
                  "or --streams need less",
-                 Planner<Point2>::required_bytes(settings_) >> 20U));
+                 Planner<Robot>::required_bytes(settings_) >> 20U));
     }
   }
 
@@ -41,7 +45,7 @@ class PlannerHost {
   MemoryBlock memory_;
   Arena arena_;
   SerialExecutor serial_;
-  Planner<Point2> planner_;
+  Planner<Robot> planner_;
 };
 
 }  // namespace sopt

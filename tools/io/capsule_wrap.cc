@@ -1,17 +1,12 @@
 #include "tools/io/capsule_wrap.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "tools/io/capsule_fit.h"
+#include "tools/io/json_fields.h"
 
 namespace sopt {
-namespace {
-
-std::string show(double number) { return nlohmann::json(number).dump(); }
-
-}  // namespace
 
 CapsuleApproximation wrap_points(const std::vector<Vec3>& points, double volume_m3) {
   CapsuleApproximation result;

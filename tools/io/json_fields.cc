@@ -11,7 +11,7 @@ using nlohmann::json;
 
 std::string describe(const json& value) {
   constexpr std::size_t kShortArray = 6;
-  if (value.is_string()) return '"' + printable(value.get_ref<const std::string&>()) + '"';
+  if (value.is_string()) return in_quotes(value.get_ref<const std::string&>());
   if (value.is_object()) return "an object";
   if (value.is_array()) {
     const bool show = value.size() <= kShortArray && !value.empty() &&
@@ -47,8 +47,12 @@ std::string field_name(std::string_view name) {
       !name.empty() && name.find_first_not_of(
                            "abcdefghijklmnopqrstuvwxyz"
                            "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") == std::string_view::npos;
-  return plain && name.size() <= 60 ? std::string(name) : '"' + printable(name) + '"';
+  return plain && name.size() <= 60 ? std::string(name) : in_quotes(name);
 }
+
+std::string show(double number) { return json(number).dump(); }
+
+std::string in_quotes(std::string_view name) { return '"' + printable(name) + '"'; }
 
 std::string valid_utf8(const std::string& text) {
   const std::string quoted = json(text).dump(-1, ' ', false, json::error_handler_t::replace);
@@ -135,14 +139,19 @@ std::string JsonField::text() const {
   return value_->get<std::string>();
 }
 
-Vec2 JsonField::pair(const NumberRule& rule, std::string_view allowed) const {
-  if (!value_->is_array() || size() != 2) fail(allowed);
-  Vec2 pair;
-  for (std::size_t i = 0; i < 2; ++i) {
+void JsonField::numbers(const NumberRule& rule, std::string_view allowed,
+                        std::span<double> out) const {
+  if (!value_->is_array() || size() != out.size()) fail(allowed);
+  for (std::size_t i = 0; i < out.size(); ++i) {
     const nlohmann::json& element = (*value_)[i];
     if (!element.is_number() || !rule.accepts(element.get<double>())) fail(allowed);
-    pair[static_cast<Eigen::Index>(i)] = element.get<double>();
+    out[i] = element.get<double>();
   }
+}
+
+Vec2 JsonField::pair(const NumberRule& rule, std::string_view allowed) const {
+  Vec2 pair;
+  numbers(rule, allowed, {pair.data(), 2});
   return pair;
 }
 

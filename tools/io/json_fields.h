@@ -10,6 +10,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -66,7 +67,9 @@ class JsonField {
 
   [[nodiscard]] double number(const NumberRule& rule) const;
   [[nodiscard]] std::string text() const;  // not empty
-  // Two numbers that `rule` accepts.
+  // Fills `out` with as many numbers that `rule` accepts.
+  void numbers(const NumberRule& rule, std::string_view allowed, std::span<double> out) const;
+  // Two of them.
   [[nodiscard]] Vec2 pair(const NumberRule& rule, std::string_view allowed) const;
   [[nodiscard]] Vec2 point() const;  // [x, y], coordinates
   [[nodiscard]] const nlohmann::json& value() const { return *value_; }
@@ -90,6 +93,10 @@ class JsonField {
 
 // Replaces what is not UTF-8; JSON and SVG cannot hold it.
 [[nodiscard]] std::string valid_utf8(const std::string& text);
+
+// A number as JSON has it, and a name in quotes, for errors.
+[[nodiscard]] std::string show(double number);
+[[nodiscard]] std::string in_quotes(std::string_view name);
 
 // Safe to show on one line: control characters escaped, cut after `max_length` characters.
 [[nodiscard]] std::string printable(std::string_view text, std::size_t max_length = 60);

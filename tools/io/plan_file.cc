@@ -21,9 +21,11 @@ constexpr std::array<std::string_view, 12> kStatusWords = {
 
 Json to_us(std::int64_t time_ns) { return static_cast<double>(time_ns) / 1000.0; }
 
-Json points_to_json(std::span<const Vec2> points) {
+template <class Vector>
+Json points_to_json(std::span<const Vector> points) {
   Json array = Json::array();
-  for (const Vec2& point : points) array.push_back({point.x(), point.y()});
+  for (const Vector& point : points)
+    array.push_back(std::span(point.data(), point.data() + point.size()));
   return array;
 }
 
@@ -53,27 +55,33 @@ Json counts_to_json(const SamplerCounts& sampler, const OptimizerCounts& optimiz
           {"qp_steps", optimizer.qp_steps}};
 }
 
-Json failure_to_json(const Scene& scene, const PlanFailure& failure) {
-  return {{"stage", to_string(failure.stage)},
-          {"reason", failure.reason},
-          {"link", failure.i_link},
-          {"obstacle", obstacle_to_json(scene, failure.i_obstacle)},
-          {"t_s", failure.t_s},
-          {"amount", failure.amount}};
+Json failure_to_json(const std::vector<std::string>& obstacle_ids, const PlanFailure& failure) {
+  Json json = {{"stage", to_string(failure.stage)},
+               {"reason", failure.reason},
+               {"link", failure.i_link},
+               {"obstacle", obstacle_to_json(obstacle_ids, failure.i_obstacle)},
+               {"t_s", failure.t_s},
+               {"amount", failure.amount}};
+  if (failure.i_obstacle == kSelfObstacle) json["other_link"] = failure.i_other_link;
+  if (failure.i_joint >= 0) json["joint"] = failure.i_joint;
+  return json;
 }
 
 // Motion, path and figures; null or empty without a plan.
-void add_plan(const PlanResult<Point2>& result, Json& plan) {
-  const Trajectory<Point2>* trajectory = result.plan ? &result.plan->trajectory() : nullptr;
+template <class Robot>
+void add_plan(const PlanResult<Robot>& result, Json& plan) {
+  const Trajectory<Robot>* trajectory = result.plan ? &result.plan->trajectory() : nullptr;
   const auto only_with_plan = [trajectory](double value) {
     return trajectory != nullptr ? value : std::numeric_limits<double>::quiet_NaN();
   };
-  const std::span<const Vec2> none;
   plan["dt_s"] = trajectory != nullptr ? Json(trajectory->dt_s) : Json(nullptr);
   plan["horizon"] = trajectory != nullptr ? trajectory->horizon() : 0;
-  plan["states"] = points_to_json(trajectory != nullptr ? trajectory->states.span() : none);
-  plan["inputs"] = points_to_json(trajectory != nullptr ? trajectory->inputs.span() : none);
-  plan["path"] = points_to_json(result.path != nullptr ? result.path->vertices.span() : none);
+  const auto all = [](const auto* owner, auto member) {
+    return owner != nullptr ? points_to_json((owner->*member).span()) : Json::array();
+  };
+  plan["states"] = all(trajectory, &Trajectory<Robot>::states);
+  plan["inputs"] = all(trajectory, &Trajectory<Robot>::inputs);
+  plan["path"] = all(result.path, &Path<Robot>::vertices);
   plan["path_length"] = only_with_plan(result.path_length);
   plan["cost"] = only_with_plan(result.cost);
   plan["duration_s"] = trajectory != nullptr ? Json(trajectory->duration_s()) : Json(nullptr);
@@ -126,33 +134,41 @@ int read_horizon(const JsonField& root) {
 }
 
 // Fills `points`, which has room for `num_points`.
+template <class Vector>
 void read_points(const JsonField& root, const char* name, int num_points,
-                 const std::string& allowed, FixedVector<Vec2>& points) {
+                 const std::string& allowed, FixedVector<Vector>& points) {
   const auto size = static_cast<std::size_t>(num_points);
   const JsonField field = root.at(name, allowed);
   field.check_array(size, size, allowed);
   if (!points.try_resize(num_points)) throw HostError("no memory for the plan");
+  const std::string num_words =
+      (Vector::SizeAtCompileTime == 2 ? "two" : std::to_string(Vector::SizeAtCompileTime)) +
+      " finite numbers";
   for (int i = 0; i < num_points; ++i) {
-    points[i] = field[static_cast<std::size_t>(i)].pair(kFinite, "two finite numbers");
+    const std::span numbers(points[i].data(), static_cast<std::size_t>(points[i].size()));
+    field[static_cast<std::size_t>(i)].numbers(kFinite, num_words, numbers);
   }
 }
 
-void read_trajectory(const JsonField& root, ReceivedPlan& plan) {
+template <class Robot>
+void read_trajectory(const JsonField& root, ReceivedPlan<Robot>& plan) {
   const int horizon = read_horizon(root);
   Arena size = Arena::measuring();
-  const Trajectory<Point2> measured(size, horizon);
+  const Trajectory<Robot> measured(size, horizon);
   plan.memory = std::make_unique<MemoryBlock>(size.used_B());
   Arena arena(*plan.memory);
-  plan.trajectory = Trajectory<Point2>(arena, horizon);
+  plan.trajectory = Trajectory<Robot>(arena, horizon);
   if (horizon > 0) plan.trajectory.dt_s = root.number_at("dt_s", kPositive);
   const std::string steps = std::to_string(horizon);
   const std::string num_states = std::to_string(horizon > 0 ? horizon + 1 : 0);
-  read_points(root, "states", horizon > 0 ? horizon + 1 : 0,
-              "an array of " + num_states + " states [x, y], horizon being " + steps,
-              plan.trajectory.states);
-  read_points(root, "inputs", horizon,
-              "an array of " + steps + " inputs [vx, vy], horizon being " + steps,
-              plan.trajectory.inputs);
+  read_points(
+      root, "states", horizon > 0 ? horizon + 1 : 0,
+      "an array of " + num_states + " states " + state_words<Robot>() + ", horizon being " + steps,
+      plan.trajectory.states);
+  read_points(
+      root, "inputs", horizon,
+      "an array of " + steps + " inputs " + input_words<Robot>() + ", horizon being " + steps,
+      plan.trajectory.inputs);
 }
 
 }  // namespace
@@ -197,25 +213,28 @@ const char* to_string(PlanStage stage) {
   return "request";
 }
 
-Json obstacle_to_json(const Scene& scene, int i_obstacle) {
+Json obstacle_to_json(const std::vector<std::string>& obstacle_ids, int i_obstacle) {
   if (i_obstacle == kBoundsObstacle) return "bounds";
+  if (i_obstacle == kSelfObstacle) return "self";
   if (i_obstacle < 0) return nullptr;
-  const std::string& id = scene.obstacle_ids[static_cast<std::size_t>(i_obstacle)];
+  const std::string& id = obstacle_ids[static_cast<std::size_t>(i_obstacle)];
   return id.empty() ? Json(i_obstacle) : Json(id);
 }
 
-Json certificate_to_json(const Scene& scene, const Certificate& certificate) {
+Json certificate_to_json(const std::vector<std::string>& obstacle_ids,
+                         const Certificate& certificate) {
   return {{"min_clearance_m", certificate.min_clearance_m},
           {"where_t_s", certificate.where_t_s},
           {"link", certificate.i_link},
-          {"obstacle", obstacle_to_json(scene, certificate.i_obstacle)},
+          {"obstacle", obstacle_to_json(obstacle_ids, certificate.i_obstacle)},
           {"worst_limit_margin", certificate.worst_limit_margin},
           {"goal_error", certificate.goal_error},
           {"dynamics_defect", certificate.dynamics_defect}};
 }
 
-std::string plan_to_text(const Scene& scene, const PlanRequest<Point2>& request,
-                         const PlanResult<Point2>& result, const StageTimes& times) {
+template <class Robot>
+std::string plan_to_text(const SceneOf<Robot>& scene, const PlanRequest<Robot>& request,
+                         const PlanResult<Robot>& result, const StageTimes& times) {
   Json plan;
   plan["schema"] = kPlanSchema;
   plan["scene"] = scene.name;
@@ -226,15 +245,17 @@ std::string plan_to_text(const Scene& scene, const PlanRequest<Point2>& request,
   plan["history"] = history_to_json(result.history);
   plan["margin"] = result.plan ? Json(result.margin_m) : Json(nullptr);
   plan["min_clearance"] = request.options.min_clearance_m;
-  plan["certificate"] =
-      result.plan ? certificate_to_json(scene, result.plan->certificate()) : Json(nullptr);
+  plan["certificate"] = result.plan
+                            ? certificate_to_json(scene.obstacle_ids, result.plan->certificate())
+                            : Json(nullptr);
   plan["times_us"] = times_to_json(times);
   plan["counts"] = counts_to_json(result.sampler_counts, result.optimizer_counts);
-  if (!result.plan) plan["failure"] = failure_to_json(scene, result.failure);
+  if (!result.plan) plan["failure"] = failure_to_json(scene.obstacle_ids, result.failure);
   return to_text(plan);
 }
 
-ReceivedPlan load_plan(const std::filesystem::path& file) {
+template <class Robot>
+ReceivedPlan<Robot> load_plan(const std::filesystem::path& file, const std::string& robot_name) {
   const nlohmann::json json = load_json(file);
   const std::string shown = printable(file.string(), 400);
   const JsonField root(json, shown);
@@ -252,10 +273,11 @@ ReceivedPlan load_plan(const std::filesystem::path& file) {
                      "counts",         "failure"});
   const JsonField schema = root.at("schema", "1");
   if (schema.value() != kPlanSchema) schema.fail("1, the only schema supported");
-  const JsonField robot = root.at("robot", "\"point2d\"");
-  if (robot.value() != "point2d") robot.fail("\"point2d\", the only robot supported");
+  const std::string allowed = '"' + printable(robot_name) + "\", the robot of the scene";
+  const JsonField robot = root.at("robot", allowed);
+  if (robot.value() != robot_name) robot.fail(allowed);
 
-  ReceivedPlan plan;
+  ReceivedPlan<Robot> plan;
   plan.scene_name = root.at("scene", "a scene's name").text();
   const JsonField status = root.at("status", "a planner's status");
   plan.status = status.text();
@@ -266,5 +288,17 @@ ReceivedPlan load_plan(const std::filesystem::path& file) {
   read_trajectory(root, plan);
   return plan;
 }
+
+#define SOPT_PLAN_FILE(Robot)                                                         \
+  template std::string plan_to_text(const SceneOf<Robot>&, const PlanRequest<Robot>&, \
+                                    const PlanResult<Robot>&, const StageTimes&);     \
+  template ReceivedPlan<Robot> load_plan(const std::filesystem::path&, const std::string&);
+SOPT_PLAN_FILE(Point2)
+SOPT_PLAN_FILE(Arm<4>)
+SOPT_PLAN_FILE(Arm<5>)
+SOPT_PLAN_FILE(Arm<6>)
+SOPT_PLAN_FILE(Arm<7>)
+SOPT_PLAN_FILE(Arm<8>)
+#undef SOPT_PLAN_FILE
 
 }  // namespace sopt

@@ -11,7 +11,7 @@
 
 #include "alloc/memory_block.h"
 #include "opt/planner.h"
-#include "tools/io/scene_file.h"
+#include "tools/io/robot_scene.h"
 
 namespace sopt {
 
@@ -21,22 +21,28 @@ inline constexpr int kPlanSchema = 1;
 [[nodiscard]] const char* to_string(PlanStage stage);
 
 // `times` replaces the result's own: medians over several calls.
-[[nodiscard]] std::string plan_to_text(const Scene& scene, const PlanRequest<Point2>& request,
-                                       const PlanResult<Point2>& result, const StageTimes& times);
+template <class Robot>
+[[nodiscard]] std::string plan_to_text(const SceneOf<Robot>& scene,
+                                       const PlanRequest<Robot>& request,
+                                       const PlanResult<Robot>& result, const StageTimes& times);
 
-// Id of the obstacle if it has one, else its index; "bounds"; null for none.
-[[nodiscard]] nlohmann::ordered_json obstacle_to_json(const Scene& scene, int i_obstacle);
-[[nodiscard]] nlohmann::ordered_json certificate_to_json(const Scene& scene,
-                                                         const Certificate& certificate);
+// Id of the obstacle if it has one, else its index; "bounds"; "self": another link; null for none.
+[[nodiscard]] nlohmann::ordered_json obstacle_to_json(const std::vector<std::string>& obstacle_ids,
+                                                      int i_obstacle);
+[[nodiscard]] nlohmann::ordered_json certificate_to_json(
+    const std::vector<std::string>& obstacle_ids, const Certificate& certificate);
 
+template <class Robot>
 struct ReceivedPlan {
   std::string scene_name;
   std::string status;                   // of the call that wrote it
   std::unique_ptr<MemoryBlock> memory;  // of the trajectory
-  Trajectory<Point2> trajectory;        // horizon 0: the file holds no plan
+  Trajectory<Robot> trajectory;         // horizon 0: the file holds no plan
 };
 
-// Throws InputError, as load_scene.
-[[nodiscard]] ReceivedPlan load_plan(const std::filesystem::path& file);
+// A plan for `scene`, whose robot it must name. Throws InputError, as load_scene.
+template <class Robot>
+[[nodiscard]] ReceivedPlan<Robot> load_plan(const std::filesystem::path& file,
+                                            const std::string& robot_name);
 
 }  // namespace sopt

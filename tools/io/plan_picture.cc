@@ -196,7 +196,7 @@ PlanPicture picture_of(const Scene& scene, const Planner<Point2>& planner,
   picture.scene = &scene;
   picture.title = printable(scene.name) + ": " + to_string(result.status);
   picture.details = describe_figures(result, times);
-  picture.failure = describe_failure(scene, result);
+  picture.failure = describe_failure<Point2>(scene, result);
   for (int i = 0; i < planner.num_streams(); ++i) {
     const SamplerStream<Point2>& stream = planner.stream(i);
     for (int node = 0; node < stream.num_nodes(); ++node) {

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 
-#include "models/arm_presets.h"
+#include "models/config.h"
 #include "models/pose3.h"
 #include "tools/io/input_error.h"
 #include "tools/io/json_fields.h"
-#include "tools/io/json_text.h"
-#include "tools/io/output_file.h"
+#include "tools/io/scene_fields.h"
 
 namespace sopt {
 namespace {
@@ -17,10 +16,9 @@ constexpr std::size_t kMaxShapes = 4096;
 constexpr std::size_t kMaxPairs = 65536;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr NumberRule kAngle{-1e3, 1e3, "a number from -1000 to 1000, in rad"};
-constexpr const char* kThree = "[x, y, z], three numbers from -1e6 to 1e6";
 constexpr const char* kLinkAllowed = "a link that a joint names as parent or child";
 
-bool is_documentary(std::string_view name) {
+bool is_documentary_in_robot(std::string_view name) {
   constexpr std::string_view kIgnored[] = {"source",
                                            "license",
                                            "notes",
@@ -33,17 +31,12 @@ bool is_documentary(std::string_view name) {
                                            "approximated",
                                            "limits_used_by_vamp",
                                            "real_world_velocity_note"};
-  return name.starts_with("reference_") || name.starts_with("x_") ||
+  return is_documentary(name) ||
          std::find(std::begin(kIgnored), std::end(kIgnored), name) != std::end(kIgnored);
 }
 
-Vec3 read_three(const JsonField& field, const NumberRule& rule, std::string_view allowed) {
-  field.check_array(3, 3, allowed);
-  return {field[0].number(rule), field[1].number(rule), field[2].number(rule)};
-}
-
 Vec3 read_point(const JsonField& object, const char* name) {
-  return read_three(object.at(name, kThree), kCoordinate, kThree);
+  return read_three(object.at(name, kPoint3Allowed), kCoordinate, kPoint3Allowed);
 }
 
 // Of one field in either spelling; zero when neither is there.
@@ -79,7 +72,10 @@ void check_joint_fields(const JsonField& field, ModelJointKind kind) {
       "origin_rpy", "axis", "lower",  "upper", "velocity", "acceleration", "effort"};
   const bool is_fixed = kind == ModelJointKind::kFixed;
   const bool is_continuous = kind == ModelJointKind::kContinuous;
-  field.check_fields(is_fixed ? kFixed : is_continuous ? kContinuous : kLimited, is_documentary);
+  field.check_fields(is_fixed        ? kFixed
+                     : is_continuous ? kContinuous
+                                     : kLimited,
+                     is_documentary_in_robot);
 }
 
 void read_motion(const JsonField& field, ModelJoint& joint) {
@@ -97,7 +93,7 @@ void read_motion(const JsonField& field, ModelJoint& joint) {
     joint.lower = field.number_at("lower", rule);
     joint.upper = field.number_at("upper", rule);
     if (joint.lower > joint.upper) {
-      field.at("lower", "").fail("at most upper, " + nlohmann::json(joint.upper).dump());
+      field.at("lower", "").fail("at most upper, " + show(joint.upper));
     }
   }
   joint.v_max = field.number_at("velocity", kPositive);
@@ -136,7 +132,7 @@ ModelJoint read_joint(const JsonField& field, RobotModel& model) {
       child.fail("the child of one joint, " + field_name(other.name) + " has it already");
     }
   }
-  joint.origin.position = read_origin(field, "xyz", "origin_xyz", kCoordinate, kThree);
+  joint.origin.position = read_origin(field, "xyz", "origin_xyz", kCoordinate, kPoint3Allowed);
   joint.origin.rotation = rotation_from_rpy(
       read_origin(field, "rpy", "origin_rpy", kAngle, "[roll, pitch, yaw], three numbers in rad"));
   if (joint.kind != ModelJointKind::kFixed) read_motion(field, joint);
@@ -149,7 +145,8 @@ void read_shapes(const JsonField& root, RobotModel& model) {
     capsules->check_array(0, kMaxShapes, kAllowed);
     for (std::size_t i = 0; i < capsules->size(); ++i) {
       const JsonField field = (*capsules)[i];
-      field.check_fields({"link", "p0", "p1", "radius", "aabb_min", "aabb_max"}, is_documentary);
+      field.check_fields({"link", "p0", "p1", "radius", "aabb_min", "aabb_max"},
+                         is_documentary_in_robot);
       model.capsules.push_back({find_link(field.at("link", kLinkAllowed), model, false),
                                 {read_point(field, "p0"), read_point(field, "p1"),
                                  field.number_at("radius", kNotNegative)}});
@@ -159,7 +156,7 @@ void read_shapes(const JsonField& root, RobotModel& model) {
     spheres->check_array(0, kMaxShapes, kAllowed);
     for (std::size_t i = 0; i < spheres->size(); ++i) {
       const JsonField field = (*spheres)[i];
-      field.check_fields({"link", "center", "radius"}, is_documentary);
+      field.check_fields({"link", "center", "radius"}, is_documentary_in_robot);
       const Vec3 center = read_point(field, "center");
       model.capsules.push_back({find_link(field.at("link", kLinkAllowed), model, false),
                                 {center, center, field.number_at("radius", kNotNegative)}});
@@ -248,7 +245,7 @@ RobotModel load_robot_file(const std::filesystem::path& file) {
   const JsonField root(json, shown);
   root.check_fields({"name", "base_link", "root_link", "joints", "capsules", "spheres",
                      "active_joints", "self_collision_link_pairs"},
-                    is_documentary);
+                    is_documentary_in_robot);
   RobotModel model;
   model.source = file.string();
   const std::optional<JsonField> name = root.find("name");
@@ -273,7 +270,8 @@ nlohmann::ordered_json robot_to_json(const RobotModel& model) {
   json["name"] = model.name;
   json["base_link"] = link(model.i_root);
   json["convention"] =
-      "T_child = T_parent * Trans(xyz) * Rz(yaw)Ry(pitch)Rx(roll) * Rot(axis,q); SI units";
+      "from a joint's parent to its child: shift by xyz, turn by rpy about the parent's x, then y, "
+      "then z, then the joint's own motion along or about axis; m, rad, s";
   if (!model.active_joints.empty()) json["active_joints"] = model.active_joints;
   json["joints"] = nlohmann::ordered_json::array();
   for (const ModelJoint& joint : model.joints)
@@ -292,10 +290,6 @@ nlohmann::ordered_json robot_to_json(const RobotModel& model) {
     }
   }
   return json;
-}
-
-void write_robot_file(const std::filesystem::path& file, const RobotModel& model) {
-  write_files({{file, to_text(robot_to_json(model))}});
 }
 
 }  // namespace sopt

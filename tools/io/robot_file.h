@@ -5,9 +5,9 @@
 //   radius}], spheres [{link, center, radius}], active_joints [names],
 //   self_collision_link_pairs [[link, link]].
 // T_child = T_parent Trans(xyz) R_z(yaw) R_y(pitch) R_x(roll) Rot(axis, q). An origin that is
-// absent is 0; axes are made unit; acceleration defaults to 5 x velocity per second. Every joint
-// that moves is active unless active_joints says otherwise. Documentary fields are ignored, unknown
-// ones are errors.
+// absent is 0; axes are made unit; acceleration defaults to kAccelerationPerVelocity x velocity.
+// Every joint that moves is active unless active_joints says otherwise. Documentary fields are
+// ignored, unknown ones are errors.
 #pragma once
 
 #include <filesystem>
@@ -22,8 +22,5 @@ namespace sopt {
 
 // The model in the `capsules` dialect, for to_text.
 [[nodiscard]] nlohmann::ordered_json robot_to_json(const RobotModel& model);
-
-// Whole or not at all; throws HostError.
-void write_robot_file(const std::filesystem::path& file, const RobotModel& model);
 
 }  // namespace sopt

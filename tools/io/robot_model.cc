@@ -17,8 +17,6 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
   throw InputError(printable(model.source, 400) + ": " + problem);
 }
 
-std::string in_quotes(const std::string& name) { return '"' + printable(name) + '"'; }
-
 const ModelJoint& find_joint(const RobotModel& model, const std::string& name) {
   const auto it = std::find_if(model.joints.begin(), model.joints.end(),
                                [&](const ModelJoint& joint) { return joint.name == name; });
@@ -168,9 +166,9 @@ void check_locked(const RobotModel& model, const JointChoice& choice) {
       fail(model, "locked joint " + in_quotes(name) + " is fixed; it must be one that moves");
     }
     if (!(value >= joint.lower && value <= joint.upper)) {
-      fail(model, "locked joint " + in_quotes(name) + " is at " + nlohmann::json(value).dump() +
-                      "; it must be within its limits, " + nlohmann::json(joint.lower).dump() +
-                      " to " + nlohmann::json(joint.upper).dump());
+      fail(model, "locked joint " + in_quotes(name) + " is at " + show(value) +
+                      "; it must be within its limits, " + show(joint.lower) + " to " +
+                      show(joint.upper));
     }
   }
 }

@@ -2,22 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "opt/reference.h"
 #include "tools/io/input_error.h"
 #include "tools/io/json_fields.h"
+#include "tools/io/scene_fields.h"
 
 namespace sopt {
 namespace {
 
 constexpr NumberRule kAngle{-1e3, 1e3, "a number from -1000 to 1000, in rad"};
-
-bool is_documentary(std::string_view name) {
-  return name.starts_with("reference_") || name.starts_with("x_");
-}
-
-std::string show(double number) { return nlohmann::json(number).dump(); }
 
 double diagonal_m(const Scene& scene) {
   return (scene.world->bounds().upper - scene.world->bounds().lower).norm();
@@ -84,10 +78,6 @@ Polygon2 read_polygon(const JsonField& vertices) {
   return polygon;
 }
 
-double read_margin(const JsonField& obstacle) {
-  return obstacle.find_number("margin", kNotNegative).value_or(kDefaultMargin);
-}
-
 void add_disc(const JsonField& obstacle, World2& world) {
   obstacle.check_fields({"type", "center", "radius", "id", "margin", "velocity"}, is_documentary);
   const Disc disc{read_point(obstacle, "center"), obstacle.number_at("radius", kPositive)};
@@ -116,12 +106,6 @@ void add_polygon(const JsonField& obstacle, World2& world) {
   if (status != WorldStatus::kOk) fail_world(vertices, status);
 }
 
-void check_does_not_move(const JsonField& obstacle) {
-  const std::optional<JsonField> velocity = obstacle.find("velocity");
-  constexpr NumberRule kZero{0.0, 0.0, "0"};
-  if (velocity) (void)velocity->pair(kZero, "[0, 0]: moving obstacles are not supported");
-}
-
 void add_obstacle(const JsonField& obstacle, World2& world) {
   constexpr const char* kTypes = "\"disc\", \"box\" or \"polygon\"";
   if (!obstacle.value().is_object()) obstacle.fail("an object");
@@ -136,7 +120,7 @@ void add_obstacle(const JsonField& obstacle, World2& world) {
   } else {
     type_field.fail(kTypes);
   }
-  check_does_not_move(obstacle);
+  check_zeros(obstacle, "velocity", 2, "[0, 0]: moving obstacles are not supported");
 }
 
 void read_world(const JsonField& root, Scene& scene) {
@@ -156,17 +140,8 @@ void read_world(const JsonField& root, Scene& scene) {
   if (arena.exhausted()) throw HostError("no memory for the obstacles of " + scene.file.string());
   if (scene.world->reset(bounds) != WorldStatus::kOk) root.at("bounds", "").fail("a rectangle");
 
-  std::map<std::string, std::size_t> first_with_id;
-  scene.obstacle_ids.resize(obstacles.size());
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    const JsonField obstacle = obstacles[i];
-    add_obstacle(obstacle, *scene.world);
-    const std::optional<JsonField> id = obstacle.find("id");
-    if (!id) continue;
-    scene.obstacle_ids[i] = id->text();
-    const auto [it, is_new] = first_with_id.try_emplace(scene.obstacle_ids[i], i);
-    if (!is_new) id->fail("unique, obstacles[" + std::to_string(it->second) + "] has it already");
-  }
+  for (std::size_t i = 0; i < obstacles.size(); ++i) add_obstacle(obstacles[i], *scene.world);
+  scene.obstacle_ids = read_ids(obstacles);
   scene.world->build();
 }
 
@@ -194,12 +169,7 @@ void read_motion(const JsonField& root, Scene& scene) {
   scene.dt_s = root.find_number("dt", kPositive);
   scene.margin_m = root.find_number("margin", kNotNegative);
   scene.min_clearance_m = root.find_number("min_clearance", kPositive);
-  const PlanOptions options = make_options(scene);
-  if (options.margin_m >= options.min_clearance_m) return;
-  if (scene.margin_m) {
-    root.find("margin")->fail("at least min_clearance, " + show(options.min_clearance_m));
-  }
-  root.find("min_clearance")->fail("at most margin, " + show(options.margin_m));
+  check_margins(root, make_options(scene));
 }
 
 }  // namespace
@@ -207,35 +177,29 @@ void read_motion(const JsonField& root, Scene& scene) {
 Scene load_scene(const std::filesystem::path& file) {
   const nlohmann::json json = load_json(file);
   const std::string shown = printable(file.string(), 400);
-  const JsonField root(json, shown);
-  if (!json.is_object()) root.fail("an object");
+  return read_scene(JsonField(json, shown), file);
+}
 
+Scene read_scene(const JsonField& root, const std::filesystem::path& file) {
   constexpr const char* kRobots = "\"point2d\", the only robot supported";
+  if (!root.value().is_object()) root.fail("an object");
   Scene scene;
   scene.file = file;
   const JsonField robot = root.at("robot", kRobots);
   if (robot.value() != "point2d") robot.fail(kRobots);
   scene.robot_name = "point2d";
-  root.check_fields(
-      {"name", "robot", "radius", "bounds", "start", "goal", "obstacles", "speed", "dt", "margin",
-       "min_clearance", "limits", "start_velocity", "goal_velocity"},
-      [](std::string_view name) {
-        constexpr std::string_view kIgnored[] = {"source",  "license",    "notes",
-                                                 "units",   "check",      "num_obstacles",
-                                                 "derived", "start_note", "tags"};
-        return is_documentary(name) ||
-               std::find(std::begin(kIgnored), std::end(kIgnored), name) != std::end(kIgnored);
-      });
-  const std::optional<JsonField> name = root.find("name");
-  scene.name = name ? name->text() : valid_utf8(file.stem().string());
+  root.check_fields({"name", "robot", "radius", "bounds", "start", "goal", "obstacles", "speed",
+                     "dt", "margin", "min_clearance", "limits", "start_velocity", "goal_velocity"},
+                    is_documentary_in_scene);
+  scene.name = read_scene_name(root, file.stem().string());
   scene.robot.radius_m = root.number_at("radius", kNotNegative);
   scene.start = read_point(root, "start");
   scene.goal = read_point(root, "goal");
   read_motion(root, scene);
   read_world(root, scene);
-  const auto reference = json.find("reference_feasible_length");
-  if (reference != json.end() && reference->is_number()) {
-    scene.reference_feasible_length = reference->get<double>();
+  const std::optional<JsonField> reference = root.find("reference_feasible_length");
+  if (reference && reference->value().is_number()) {
+    scene.reference_feasible_length = reference->value().get<double>();
   }
   return scene;
 }
@@ -268,10 +232,7 @@ PlannerSettings make_settings(const Scene& scene, const PlanOptions& options) {
 }
 
 std::string obstacle_name(const Scene& scene, int i_obstacle) {
-  if (i_obstacle == kBoundsObstacle) return "the bounds";
-  if (i_obstacle < 0) return "nothing";
-  const std::string& id = scene.obstacle_ids[static_cast<std::size_t>(i_obstacle)];
-  return "obstacle " + (id.empty() ? std::to_string(i_obstacle) : '"' + printable(id) + '"');
+  return obstacle_name(scene.obstacle_ids, i_obstacle);
 }
 
 }  // namespace sopt

@@ -20,6 +20,8 @@
 
 namespace sopt {
 
+class JsonField;
+
 struct Scene {
   std::filesystem::path file;
   std::string name;                     // the file's stem when the scene has none
@@ -40,6 +42,8 @@ struct Scene {
 
 // Throws InputError; its what() is one line: file, field, value, what is allowed.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file);
+// The same of what was parsed already.
+[[nodiscard]] Scene read_scene(const JsonField& root, const std::filesystem::path& file);
 
 // The scene's problem with the scene's options, seed 1, no deadline. Points into `scene`.
 [[nodiscard]] PlanRequest<Point2> make_request(const Scene& scene);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "models/arm_presets.h"
+#include "models/config.h"
 #include "models/pose3.h"
 #include "tools/io/input_error.h"
 #include "tools/io/input_text.h"
@@ -22,25 +22,26 @@ namespace fs = std::filesystem;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 1e6;
 
-std::string show(double number) { return nlohmann::json(number).dump(); }
-std::string in_quotes(const std::string& name) { return '"' + printable(name) + '"'; }
-
-// The parser reports through a global log; what it says first is the reason.
-class FirstError final : public console_bridge::OutputHandler {
+// The parser reports through a global log: first the reason, then the element it is in. What it
+// cannot read of a link it leaves out and goes on.
+class ParserErrors final : public console_bridge::OutputHandler {
  public:
-  FirstError() { console_bridge::useOutputHandler(this); }
-  FirstError(const FirstError&) = delete;
-  FirstError& operator=(const FirstError&) = delete;
-  ~FirstError() override { console_bridge::restorePreviousOutputHandler(); }
+  ParserErrors() { console_bridge::useOutputHandler(this); }
+  ParserErrors(const ParserErrors&) = delete;
+  ParserErrors& operator=(const ParserErrors&) = delete;
+  ~ParserErrors() override { console_bridge::restorePreviousOutputHandler(); }
 
   void log(const std::string& text, console_bridge::LogLevel level, const char* /*file*/,
            int /*line*/) override {
-    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && text_.empty()) text_ = text;
+    if (level < console_bridge::CONSOLE_BRIDGE_LOG_ERROR) return;
+    if (num_errors_ < 2) text_ += (num_errors_ == 0 ? "" : "; ") + text;
+    ++num_errors_;
   }
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
   std::string text_;
+  int num_errors_ = 0;
 };
 
 // The XML parser below calls itself for every level of elements.
@@ -102,7 +103,7 @@ class UrdfReader {
   urdf::ModelInterfaceSharedPtr parse() const {
     const std::string xml = read_input(file_, "a URDF file");
     if (is_nested_too_deep(xml)) fail("nests elements deeper than 100 levels, the limit");
-    const FirstError first_error;
+    const ParserErrors errors;
     urdf::ModelInterfaceSharedPtr model;
     std::string thrown;
     try {
@@ -110,8 +111,8 @@ class UrdfReader {
     } catch (const std::exception& error) {
       thrown = error.what();
     }
-    if (model) return model;
-    const std::string& reason = first_error.text().empty() ? thrown : first_error.text();
+    if (model && errors.text().empty()) return model;
+    const std::string& reason = errors.text().empty() ? thrown : errors.text();
     fail("not a valid URDF: " + printable(reason, 200));
   }
 
@@ -277,6 +278,7 @@ class UrdfReader {
   CapsuleApproximation wrap_mesh(const urdf::Mesh& source, const std::string& where) const {
     Mesh mesh = load_mesh(find_mesh(source.filename, where));
     const Vec3 scale = checked(source.scale, where + "mesh scale");
+    if (scale.prod() == 0.0) fail(where + "mesh scale has a 0; it must have none");
     for (Vec3& v : mesh.vertices) v = v.cwiseProduct(scale);
     CapsuleApproximation result = wrap_points(mesh.vertices, mesh_volume_m3(mesh));
     result.geometry = "mesh " + printable(fs::path(source.filename).filename().string()) + ", " +

@@ -4,7 +4,7 @@
 // file's folder and the four folders above it. Not supported, an error that names the joint: mimic,
 // floating and planar joints. Active joints: the chain from the root that follows, at forks, the
 // branch with more moving joints and ends where branches tie, as at the fingers of a hand.
-// No acceleration limits in URDF: 5 x velocity per second.
+// No acceleration limits in URDF: kAccelerationPerVelocity x velocity.
 #pragma once
 
 #include <filesystem>

@@ -29,25 +29,27 @@ struct Arguments {
   std::string json_file;
 };
 
-// What is compared stands together; between two runs of sopt the caches belong to others.
+// What is compared stands together; between two runs of sopt the caches belong to others. OMPL's
+// planners only sample, so single trees of ours do too.
 std::vector<std::unique_ptr<Peer>> make_peers(double long_budget_s) {
   using enum OmplPlanner;
   using enum OmplMotionTest;
   using enum SoptStage;
   constexpr SamplerMode kDefault = PlanOptions{}.sampler;
+  constexpr SamplerMode kOneTree = SamplerMode::kRrtStar;
   std::vector<std::unique_ptr<Peer>> peers;
   const auto add = [&peers](std::unique_ptr<Peer> peer) { peers.push_back(std::move(peer)); };
-  add(make_sopt_peer(kSoptRrtStar, kFirstPath, SamplerMode::kRrtStar));
+  add(make_sopt_peer(kSoptRrtStar, {kFirstPath, kOneTree, 0, false}));
   add(make_ompl_peer(kOmplRrtStar, kRrtStar, kDiscrete));
-  add(make_sopt_peer(kSoptRrtStarOneStream, kFirstPath, SamplerMode::kRrtStar, 1));
+  add(make_sopt_peer(kSoptRrtStarOneStream, {kFirstPath, kOneTree, 1, false}));
   add(make_ompl_peer(kOmplRrtStarExact, kRrtStar, kExact));
   add(make_ompl_peer(kOmplInformedRrtStar, kInformedRrtStar, kDiscrete));
   add(make_ompl_peer(kOmplBitStar, kBitStar, kDiscrete));
-  add(make_sopt_peer(kSoptFirstPath, kFirstPath, kDefault));
+  add(make_sopt_peer(kSoptFirstPath, {kFirstPath, kDefault}));
   add(make_ompl_peer(kOmplRrtConnect, kRrtConnect, kDiscrete));
-  add(make_sopt_peer(kSoptFirstPathOneStream, kFirstPath, kDefault, 1));
+  add(make_sopt_peer(kSoptFirstPathOneStream, {kFirstPath, kDefault, 1, false}));
   add(make_ompl_peer(kOmplRrtConnectExact, kRrtConnect, kExact));
-  add(make_sopt_peer(kSoptPlan, kVerifiedPlan, kDefault));
+  add(make_sopt_peer(kSoptPlan, {kVerifiedPlan, kDefault}));
   add(make_ompl_peer(kOmplSimplified, kRrtConnectSimplify, kDiscrete));
   add(make_ompl_peer(kOmplSimplifiedExact, kRrtConnectSimplify, kExact));
   add(make_ompl_rrt_star_for(kOmplRrtStarLong, long_budget_s));
@@ -75,21 +77,23 @@ void add_options(CLI::App& app, Arguments& arguments) {
 }
 
 void run(const Arguments& arguments) {
-  const std::vector<std::filesystem::path> scenes = given_or_shipped_scenes(arguments.scenes);
+  const std::vector<std::filesystem::path> files = given_or_shipped_scenes(arguments.scenes);
   std::vector<std::filesystem::path> outputs;
   if (!arguments.json_file.empty()) outputs.emplace_back(arguments.json_file);
-  check_outputs(outputs, scenes);
+  check_outputs(outputs, files);
   const PeersOptions& options = arguments.options;
+  const auto [kind, scenes] = load_bench_scenes(files);
   (void)std::printf(
       "%s, OMPL %s\n%zu scenes x %d seeds, RRT* for %g s x %d seeds; CPU time of the one thread, "
-      "inside the solve call\nstates of a motion at most %g m apart; \"exact\": this project's "
-      "segment test, which needs no resolution\n",
+      "inside the solve call\nstates of a motion at most %g %s apart; \"exact\": this project's "
+      "motion test, which needs no resolution\n",
       describe_machine().c_str(), ompl_version().c_str(), scenes.size(), options.num_seeds,
-      options.long_budget_s, options.num_slow_seeds, kResolution_m);
+      options.long_budget_s, options.num_slow_seeds, kResolution, length_unit(kind));
   (void)std::fflush(stdout);
   const std::vector<PeerRun> runs = run_peers(scenes, options, make_peers(options.long_budget_s));
-  if (!outputs.empty()) write_files({{arguments.json_file, to_text(to_json(runs, options))}});
-  (void)std::fputs((describe_peers(runs) + describe_ratios(compare(runs))).c_str(), stdout);
+  if (!outputs.empty()) write_files({{arguments.json_file, to_text(to_json(runs, kind, options))}});
+  (void)std::fputs((describe_peers(runs, kind) + describe_ratios(compare(runs, kind))).c_str(),
+                   stdout);
 }
 
 int report(const std::string& line, int exit_code) {

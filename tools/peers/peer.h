@@ -1,30 +1,52 @@
-// A planner as the comparison sees it: prepared once per scene, then run once per seed. What counts
-// is the CPU time of the calling thread inside the planner's own solve call; building planner and
-// problem is never timed. Every peer keeps the same clearance from the same World2.
+// A planner as the comparison sees it: prepared for a scene, then run once per seed. What counts is
+// the CPU time of the calling thread inside the planner's own solve call; building planner and
+// problem is never timed. Every peer keeps the same clearance from the same world, by the same
+// robot's own checks.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "models/arm_clearance.h"
 #include "models/margin.h"
 #include "models/trajectory.h"
 #include "rt/clock.h"
 #include "tools/bench/allocation_counter.h"
-#include "tools/io/scene_file.h"
+#include "tools/bench/bench_scenes.h"
 
 namespace sopt {
 
+template <class Robot>
 struct PeerProblem {
-  const Scene* scene = nullptr;
-  PlanRequest<Point2> request;  // its seed is not used
-  ClearanceRule rule;           // the request's margin, nowhere relaxed
+  const SceneOf<Robot>* scene = nullptr;
+  PlanRequest<Robot> request;  // its seed is not used
+  ClearanceRule rule;          // the request's margin, nowhere relaxed
 };
 
-[[nodiscard]] inline PeerProblem make_peer_problem(const Scene& scene) {
-  const PlanRequest<Point2> request = make_request(scene);
-  return {&scene, request, {.margin_m = request.options.margin_m}};
+template <class SomeScene>
+[[nodiscard]] PeerProblem<RobotOf<SomeScene>> make_peer_problem(const SomeScene& scene) {
+  const auto request = make_request(scene);
+  ClearanceRule rule;
+  rule.margin_m = request.options.margin_m;
+  rule.floor_m = request.options.min_clearance_m;
+  return {&scene, request, rule};
+}
+
+// One configuration, exactly.
+[[nodiscard]] inline bool is_clear(const Point2& robot, const World2& world, const Vec2& q,
+                                   const ClearanceRule& rule) {
+  return robot.motion_is_clear(world, rule, q, q);
+}
+template <int N>
+[[nodiscard]] bool is_clear(const Arm<N>& arm, const World3& world,
+                            const typename Arm<N>::Config& q, const ClearanceRule& rule) {
+  ArmPose<N> pose;
+  arm.forward(q, pose);
+  return is_clear(arm, world, pose, rule, kSelfClearance_m);
 }
 
 // One solve.
@@ -32,9 +54,20 @@ struct PeerResult {
   bool is_solved = false;
   std::int64_t time_ns = 0;
   std::int64_t num_allocations = 0;
-  double length_m = 0.0;   // of the solution; 0 without one
-  std::vector<Vec2> path;  // the solution, straight between its points; empty: not known
-  std::string failure;     // why it is not solved, in the peer's words
+  double length = 0.0;                // of the solution, in the robot's path metric; 0 without one
+  std::vector<Eigen::VectorXd> path;  // the solution, straight between its points; empty: not known
+  std::string failure;                // why it is not solved, in the peer's words
+};
+
+// A planner ready for one scene.
+class PeerSolver {
+ public:
+  PeerSolver() = default;
+  PeerSolver(const PeerSolver&) = delete;
+  PeerSolver& operator=(const PeerSolver&) = delete;
+  virtual ~PeerSolver() = default;
+
+  [[nodiscard]] virtual PeerResult run(std::uint64_t seed) = 0;
 };
 
 class Peer {
@@ -49,14 +82,25 @@ class Peer {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] bool is_slow() const { return is_slow_; }
 
-  // The problem's scene must stay until the next call.
-  virtual void prepare(const PeerProblem& problem) = 0;
-  [[nodiscard]] virtual PeerResult run(std::uint64_t seed) = 0;
+  // The scene must outlive the solver.
+  [[nodiscard]] virtual std::unique_ptr<PeerSolver> prepare(const AnyScene& scene) const = 0;
 
  private:
   std::string name_;
   bool is_slow_;
 };
+
+// A Solver<Robot> for whatever robot the scene has.
+template <template <class> class Solver, class... Settings>
+[[nodiscard]] std::unique_ptr<PeerSolver> make_solver(const AnyScene& any,
+                                                      const Settings&... settings) {
+  return std::visit(
+      [&](const auto& scene) -> std::unique_ptr<PeerSolver> {
+        using Robot = RobotOf<std::decay_t<decltype(scene)>>;
+        return std::make_unique<Solver<Robot>>(make_peer_problem(scene), settings...);
+      },
+      any);
+}
 
 // Calls `solve` and puts what it cost into `result`.
 template <class Solve>

@@ -27,7 +27,7 @@ struct PeerSummary {
   int num_solved = 0;
   int num_cases = 0;
   Distribution time_us;
-  Distribution length_m;
+  Distribution length;
   double allocations = 0.0;  // median
   int num_checked = 0;       // paths
   int num_below_margin = 0;  // of them, those that collide included
@@ -44,7 +44,7 @@ PeerSummary summary_of(const PeerRun& run) {
   s.num_cases = static_cast<int>(run.cases.size());
   s.time_us = over_solved(run, time_us);
   s.num_solved = s.time_us.count;
-  s.length_m = over_solved(run, [](const PeerCase& c) { return c.length_m; });
+  s.length = over_solved(run, [](const PeerCase& c) { return c.length; });
   s.allocations = over_solved(run, [](const PeerCase& c) {
                     return static_cast<double>(c.num_allocations);
                   }).median;
@@ -71,7 +71,7 @@ std::map<CaseKey, const PeerCase*> solved_cases(const std::vector<PeerRun>& runs
 double figure_of(PeerFigure figure, const std::vector<const PeerCase*>& cases) {
   std::vector<double> values;
   for (const PeerCase* c : cases) {
-    values.push_back(figure == PeerFigure::kMedianTime ? time_us(*c) : c->length_m);
+    values.push_back(figure == PeerFigure::kMedianTime ? time_us(*c) : c->length);
   }
   const Distribution d = summarize(std::move(values));
   return figure == PeerFigure::kMedianTime ? d.median : d.mean;
@@ -119,7 +119,7 @@ nlohmann::ordered_json to_json(const PeerRun& run) {
           {"cases", s.num_cases},
           {"solved", s.num_solved},
           {"time_us", to_json(s.time_us)},
-          {"length_m", to_json(s.length_m)},
+          {"length", to_json(s.length)},
           {"allocations_median", s.allocations},
           {"paths_checked", s.num_checked},
           {"paths_below_margin", s.num_below_margin},
@@ -145,7 +145,7 @@ nlohmann::ordered_json to_json(const std::string& peer, const PeerCase& c) {
           {"seed", c.seed},
           {"solved", c.is_solved},
           {"time_us", time_us(c)},
-          {"length_m", c.length_m},
+          {"length", c.length},
           {"allocations", c.num_allocations},
           {"path", to_string(c.verdict)},
           {"failure", c.failure}};
@@ -167,37 +167,43 @@ std::string describe_failures(const PeerRun& run) {
 
 }  // namespace
 
-std::vector<PeerRatio> compare(const std::vector<PeerRun>& runs) {
+std::vector<PeerRatio> compare(const std::vector<PeerRun>& runs, SceneKind kind) {
   constexpr PeerFigure kTime = PeerFigure::kMedianTime;
   constexpr PeerFigure kLength = PeerFigure::kMeanLength;
+  const auto target = [kind](double in_plane, double of_arms) {
+    return kind == SceneKind::kPlane ? in_plane : of_arms;
+  };
   std::vector<PeerRatio> ratios = {
-      {kSoptFirstPath, kOmplRrtStar, kTime, 0.10},
+      {kSoptFirstPath, kOmplRrtStar, kTime, target(0.10, 0.0)},
       {kSoptFirstPath, kOmplRrtStarExact, kTime},
+      {kSoptFirstPath, kOmplRrtConnect, kTime, target(0.0, 1.0)},
       {kSoptFirstPath, kOmplRrtConnectExact, kTime},
       {kSoptFirstPathOneStream, kOmplRrtStar, kTime},
       {kSoptFirstPathOneStream, kOmplRrtConnectExact, kTime},
-      {kSoptRrtStar, kOmplRrtStar, kTime, 0.10},
+      {kSoptRrtStar, kOmplRrtStar, kTime, target(0.10, 0.0)},
       {kSoptRrtStarOneStream, kOmplRrtStar, kTime},
       {kSoptRrtStarOneStream, kOmplRrtStarExact, kTime},
-      {kSoptPlan, kOmplSimplified, kTime, 1.0},
+      {kSoptPlan, kOmplSimplified, kTime, target(1.0, 0.0)},
       {kSoptPlan, kOmplSimplifiedExact, kTime},
-      {kSoptPlan, kOmplSimplified, kLength},
-      {kSoptPlan, kOmplRrtStarLong, kLength, 1.03},
+      {kSoptPlan, kOmplSimplified, kLength, target(0.0, 1.0)},
+      {kSoptPlan, kOmplSimplifiedExact, kLength},
+      {kSoptPlan, kOmplRrtStarLong, kLength, target(1.03, 0.0)},
   };
   for (PeerRatio& ratio : ratios) evaluate(runs, ratio);
   return ratios;
 }
 
-std::string describe_peers(const std::vector<PeerRun>& runs) {
+std::string describe_peers(const std::vector<PeerRun>& runs, SceneKind kind) {
+  const std::string length_name = format("len [%s]", length_unit(kind));
   std::string text =
-      format("%-31s %9s | %9s %9s %9s %9s | %8s %8s | %9s | %7s %7s\n", "", "solved", "t [us]",
-             "p95", "p99", "max", "len [m]", "mean", "allocs", "<margin", "collide");
+      format("%-31s %9s | %9s %9s %9s %9s | %9s %8s | %9s | %7s %7s\n", "", "solved", "t [us]",
+             "p95", "p99", "max", length_name.c_str(), "mean", "allocs", "<margin", "collide");
   for (const PeerRun& run : runs) {
     const PeerSummary s = summary_of(run);
     if (s.num_cases == 0) continue;
-    text += format("%-31s %4d/%-4d | %9.1f %9.1f %9.1f %9.1f | %8.2f %8.2f | %9.0f |",
+    text += format("%-31s %4d/%-4d | %9.1f %9.1f %9.1f %9.1f | %9.2f %8.2f | %9.0f |",
                    run.peer.c_str(), s.num_solved, s.num_cases, s.time_us.median, s.time_us.p95,
-                   s.time_us.p99, s.time_us.max, s.length_m.median, s.length_m.mean, s.allocations);
+                   s.time_us.p99, s.time_us.max, s.length.median, s.length.mean, s.allocations);
     text += s.num_checked > 0 ? format(" %7d %7d\n", s.num_below_margin, s.num_colliding)
                               : format(" %7s %7s\n", "-", "-");
   }
@@ -223,14 +229,16 @@ std::string describe_ratios(const std::vector<PeerRatio>& ratios) {
   return text;
 }
 
-nlohmann::ordered_json to_json(const std::vector<PeerRun>& runs, const PeersOptions& options) {
+nlohmann::ordered_json to_json(const std::vector<PeerRun>& runs, SceneKind kind,
+                               const PeersOptions& options) {
   nlohmann::ordered_json document = {{"schema", 1},
                                      {"machine", describe_machine()},
+                                     {"length_unit", length_unit(kind)},
                                      {"seeds", options.num_seeds},
                                      {"long_seeds", options.num_slow_seeds},
                                      {"long_seconds", options.long_budget_s}};
   for (const PeerRun& run : runs) document["peers"].push_back(to_json(run));
-  for (const PeerRatio& ratio : compare(runs)) document["ratios"].push_back(to_json(ratio));
+  for (const PeerRatio& ratio : compare(runs, kind)) document["ratios"].push_back(to_json(ratio));
   for (const PeerRun& run : runs) {
     for (const PeerCase& c : run.cases) document["cases"].push_back(to_json(run.peer, c));
   }

@@ -1,5 +1,6 @@
 // What a comparison says: a row of figures per peer, and the ratios that have a target. A ratio
-// counts the cases (scene and seed) that both of its peers solved.
+// counts the cases (scene and seed) that both of its peers solved. Targets in the plane and of arms
+// differ.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -24,13 +25,13 @@ struct PeerRatio {
 };
 
 // The ratios of the comparison, in the order of the report.
-[[nodiscard]] std::vector<PeerRatio> compare(const std::vector<PeerRun>& runs);
+[[nodiscard]] std::vector<PeerRatio> compare(const std::vector<PeerRun>& runs, SceneKind kind);
 
-[[nodiscard]] std::string describe_peers(const std::vector<PeerRun>& runs);
+[[nodiscard]] std::string describe_peers(const std::vector<PeerRun>& runs, SceneKind kind);
 [[nodiscard]] std::string describe_ratios(const std::vector<PeerRatio>& ratios);
 
 // Everything: machine, options, one entry per peer, ratios, cases.
-[[nodiscard]] nlohmann::ordered_json to_json(const std::vector<PeerRun>& runs,
+[[nodiscard]] nlohmann::ordered_json to_json(const std::vector<PeerRun>& runs, SceneKind kind,
                                              const PeersOptions& options);
 
 }  // namespace sopt

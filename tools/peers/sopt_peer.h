@@ -14,8 +14,14 @@ enum class SoptStage {
   kVerifiedPlan,  // the whole of plan()
 };
 
-// `num_streams` as in PlanOptions; one ends with its first path, as a single tree does.
-[[nodiscard]] std::unique_ptr<Peer> make_sopt_peer(std::string name, SoptStage stage,
-                                                   SamplerMode mode, int num_streams = 0);
+// What is asked of it; the rest is as in the scene's request.
+struct SoptVariant {
+  SoptStage stage = SoptStage::kVerifiedPlan;
+  SamplerMode sampler = PlanOptions{}.sampler;
+  int num_streams = 0;  // as in PlanOptions; one ends with its first path, as a single tree does
+  bool lattice = true;  // false: samples alone, to be held against planners that only sample
+};
+
+[[nodiscard]] std::unique_ptr<Peer> make_sopt_peer(std::string name, const SoptVariant& variant);
 
 }  // namespace sopt

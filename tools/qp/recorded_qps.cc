@@ -41,7 +41,7 @@ Plan0 make_plan_0(const Scene& scene, std::uint64_t seed) {
   PlanOptions& options = request.options;
   options.max_iterations = 0;
   options.resampling = Resampling::kOff;
-  const auto host = std::make_unique<PlannerHost>(scene, options);
+  const auto host = std::make_unique<PlannerHost<Point2>>(scene, options);
   const PlanResult<Point2> result = host->planner().plan(request);
   if (!result.plan) {
     throw InputError(printable(scene.file.string(), 400) + ": no plan with seed " +

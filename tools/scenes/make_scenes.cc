@@ -1,4 +1,4 @@
-// Writes the shipped planar scenes: `sopt_make_scenes tools/scenes`. The same bytes on every run,
+// Writes the shipped scenes: `sopt_make_scenes tools/scenes`. The same bytes on every run,
 // so a difference to the files that are there is a change of the generator.
 #include <cstdio>
 #include <exception>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/io/output_file.h"
+#include "tools/scenes/arm_scene_generator.h"
 #include "tools/scenes/scene_generator.h"
 
 int main(int argc, char** argv) {
@@ -15,10 +16,14 @@ int main(int argc, char** argv) {
   }
   try {
     std::vector<sopt::OutputFile> files;
-    for (const sopt::GeneratedScene& scene : sopt::generate_scenes()) {
-      files.push_back({std::filesystem::path(argv[1]) / scene.file, sopt::to_json_text(scene)});
-      std::filesystem::create_directories(files.back().file.parent_path());
-    }
+    const auto add = [&](const auto& scenes) {
+      for (const auto& scene : scenes) {
+        files.push_back({std::filesystem::path(argv[1]) / scene.file, sopt::to_json_text(scene)});
+        std::filesystem::create_directories(files.back().file.parent_path());
+      }
+    };
+    add(sopt::generate_scenes());
+    add(sopt::generate_arm_scenes());
     sopt::write_files(files);
   } catch (const std::exception& error) {
     (void)std::fprintf(stderr, "sopt_make_scenes: %s\n", error.what());

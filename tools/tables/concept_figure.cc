@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cstdint>
+#include <type_traits>
+#include <variant>
 
 #include "tools/io/json_fields.h"
 #include "tools/io/plan_report.h"
@@ -12,15 +14,17 @@ namespace {
 double to_ms(std::int64_t time_ns) { return 1e-6 * static_cast<double>(time_ns); }
 
 // Restarts until the budget is used; the last point is where it ends.
-ChartSeries sample_alone(TimedPlanner& timed, const AlgorithmOptions& choices, double budget_ms) {
+template <class Robot>
+ChartSeries sample_alone(TimedPlanner<Robot>& timed, const AlgorithmOptions& choices,
+                         double budget_ms) {
   ChartSeries series{"RRT* alone: restarts, best so far", {}, SeriesStyle::kSteps, {}};
   double time_ms = 0.0;
   int num_starts = 0;
   while (time_ms < budget_ms) {
-    PlanRequest<Point2> request =
+    PlanRequest<Robot> request =
         timed.make_request(choices, static_cast<std::uint64_t>(++num_starts));
     request.options.max_iterations = 0;
-    const PlanResult<Point2> result = timed.planner().plan(request);
+    const PlanResult<Robot> result = timed.planner().plan(request);
     if (result.path == nullptr) {
       time_ms += to_ms(result.times.total_ns);
       continue;
@@ -38,11 +42,12 @@ ChartSeries sample_alone(TimedPlanner& timed, const AlgorithmOptions& choices, d
 }
 
 // From the sampled path on, one point per sweep.
-ChartSeries sample_and_optimize(TimedPlanner& timed, const char* name,
+template <class Robot>
+ChartSeries sample_and_optimize(TimedPlanner<Robot>& timed, const char* name,
                                 const AlgorithmOptions& choices) {
-  const PlanRequest<Point2> request = timed.make_request(choices, 1);
+  const PlanRequest<Robot> request = timed.make_request(choices, 1);
   (void)timed.planner().plan(request);  // brings code and memory into the caches
-  const PlanResult<Point2> result = timed.planner().plan(request);
+  const PlanResult<Robot> result = timed.planner().plan(request);
   ChartSeries series{name, {}, SeriesStyle::kLineMarkers, {}};
   if (result.path == nullptr) return series;
   series.points.emplace_back(to_ms(result.times.sample_ns), result.sampler_path_length);
@@ -54,10 +59,9 @@ ChartSeries sample_and_optimize(TimedPlanner& timed, const char* name,
   return series;
 }
 
-}  // namespace
-
-LineChart concept_chart(const Scene& scene, double budget_s) {
-  TimedPlanner timed(scene);
+template <class Robot>
+LineChart concept_chart_of(const SceneOf<Robot>& scene, double budget_s) {
+  TimedPlanner<Robot> timed(scene);
   AlgorithmOptions sampled;
   sampled.sampler = "rrt_star";
   sampled.no_shortcut = true;
@@ -65,7 +69,7 @@ LineChart concept_chart(const Scene& scene, double budget_s) {
   LineChart chart;
   chart.title = printable(scene.name) + format(", %d obstacles", scene.world->num_obstacles());
   chart.x_label = "thread CPU time [ms]";
-  chart.y_label = "path length [m]";
+  chart.y_label = format("path length [%s]", kPathUnit<Robot>);
   chart.log_x = true;
   // Optimised first: then the sampler alone finds its code and memory in the caches too.
   const ChartSeries from_sample =
@@ -73,6 +77,16 @@ LineChart concept_chart(const Scene& scene, double budget_s) {
   chart.series = {sample_alone(timed, sampled, 1e3 * budget_s), from_sample,
                   sample_and_optimize(timed, "RRT*-sOpt, defaults", {})};
   return chart;
+}
+
+}  // namespace
+
+LineChart concept_chart(const AnyScene& scene, double budget_s) {
+  return std::visit(
+      [&](const auto& typed) {
+        return concept_chart_of<std::decay_t<decltype(robot_of(typed))>>(typed, budget_s);
+      },
+      scene);
 }
 
 }  // namespace sopt

@@ -1,8 +1,8 @@
-// What [Leu22] concludes from its Table I, as statements that figures decide: the paper's own and
-// each of ours go through the same conditions. Differences below kMaterial count as none.
+// What [Leu22] concludes from its Tables I and II, as statements that figures decide: the paper's
+// own and each of ours go through the same conditions, those of both tables through the same for
+// both. Differences below kMaterial count as none.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -29,13 +29,18 @@ struct ClaimFigures {
   std::string source;  // "A"
   std::string clock;   // "serial"; empty: the only one
   const char* time_unit = "us";
-  double rrt_star_length = 0.0;                       // 0: no case to compare
-  std::array<ClaimColumn, kNumTableColumns> columns;  // as kPaperColumns
+  const PaperTable* table = nullptr;
+  double rrt_star_length = 0.0;      // 0: no case to compare
+  std::vector<ClaimColumn> columns;  // as the table's
 };
 
-[[nodiscard]] ClaimFigures figures_of_paper();
+[[nodiscard]] ClaimFigures figures_of(const PaperTable& table);
 // Of the mode's serial times, or of its critical paths.
-[[nodiscard]] ClaimFigures figures_of(const ModeSummary& mode, bool is_critical_path);
+[[nodiscard]] ClaimFigures figures_of(const PaperTable& table, const ModeSummary& mode,
+                                      bool is_critical_path);
+// The paper's, then both of every mode.
+[[nodiscard]] std::vector<ClaimFigures> list_figures(const PaperTable& table,
+                                                     const std::vector<ModeSummary>& modes);
 
 struct Evidence {
   std::string source, clock;
@@ -43,13 +48,20 @@ struct Evidence {
   std::string text;
 };
 
+// "A, serial"
+[[nodiscard]] std::string name_of(const std::string& source, const std::string& clock);
+
 struct Claim {
   std::string statement;
   std::vector<Evidence> evidence;
 };
 
-// Every statement with what each of `figures` says to it; to a statement that is not about time,
-// only the first of neighbours with one source.
+// Every statement about the figures' table, which is one, with what each of `figures` says to it;
+// to a statement that is not about time, only the first of neighbours with one source.
 [[nodiscard]] std::vector<Claim> judge_claims(const std::vector<ClaimFigures>& figures);
+
+// What is said about two tables, of few obstacles and of many; their figures have the same sources.
+[[nodiscard]] Claim judge_more_obstacles(const std::vector<ClaimFigures>& few,
+                                         const std::vector<ClaimFigures>& many);
 
 }  // namespace sopt

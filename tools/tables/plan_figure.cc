@@ -5,7 +5,7 @@
 namespace sopt {
 
 std::string draw_plan(const Scene& scene) {
-  TimedPlanner timed(scene);
+  TimedPlanner<Point2> timed(scene);
   const PlanRequest<Point2> request = timed.make_request({}, 1);
   (void)timed.planner().plan(request);  // brings code and memory into the caches
   const PlanResult<Point2> result = timed.planner().plan(request);

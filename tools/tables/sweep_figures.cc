@@ -2,6 +2,8 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <type_traits>
+#include <variant>
 
 #include "tools/io/json_fields.h"
 #include "tools/io/plan_picture.h"
@@ -33,16 +35,19 @@ struct Descent {
   std::vector<IterationRecord> history;
 };
 
-Descent descend(TimedPlanner& timed, const std::string& name, const AlgorithmOptions& choices) {
-  PlanRequest<Point2> request = timed.make_request(choices, 1);
+template <class Robot>
+Descent descend(TimedPlanner<Robot>& timed, const std::string& name,
+                const AlgorithmOptions& choices) {
+  PlanRequest<Robot> request = timed.make_request(choices, 1);
   request.options.tol_step = kFineTolerance;
   (void)timed.planner().plan(request);  // brings code and memory into the caches
-  const PlanResult<Point2> result = timed.planner().plan(request);
+  const PlanResult<Robot> result = timed.planner().plan(request);
   const std::string end = choices.no_merge ? "" : format(" to %d", result.segments_final);
   return {name + end, {result.history.begin(), result.history.end()}};
 }
 
-std::vector<Descent> descents(TimedPlanner& timed, const char* qp) {
+template <class Robot>
+std::vector<Descent> descents(TimedPlanner<Robot>& timed, const char* qp) {
   std::vector<Descent> result;
   const auto add = [&](const char* name, const char* num_segments, bool merges) {
     AlgorithmOptions choices = from_sampled_path(num_segments, merges);
@@ -60,12 +65,13 @@ double time_us_of(const IterationRecord& entry) {
   return 1e-3 * static_cast<double>(entry.time_ns);
 }
 
+template <class Robot>
 LineChart descent_chart(const std::vector<Descent>& all, const std::string& title,
                         const char* x_label, double (*x)(const IterationRecord&)) {
   LineChart chart;
   chart.title = title;
   chart.x_label = x_label;
-  chart.y_label = "cost [m]";
+  chart.y_label = format("cost [%s]", kPathUnit<Robot>);
   for (const Descent& descent : all) {
     ChartSeries& series =
         chart.series.emplace_back(ChartSeries{descent.name, {}, SeriesStyle::kLineMarkers, {}});
@@ -90,7 +96,7 @@ struct Sweep {
   double length_m = 0.0;
 };
 
-Sweep plan_sweeps(TimedPlanner& timed, int num_sweeps) {
+Sweep plan_sweeps(TimedPlanner<Point2>& timed, int num_sweeps) {
   PlanRequest<Point2> request = timed.make_request(from_sampled_path("3", false), 1);
   request.options.max_iterations = num_sweeps;
   const PlanResult<Point2> result = timed.planner().plan(request);
@@ -101,21 +107,30 @@ Sweep plan_sweeps(TimedPlanner& timed, int num_sweeps) {
           result.path_length};
 }
 
-}  // namespace
-
-std::vector<LineChart> merging_charts(const Scene& scene) {
-  TimedPlanner timed(scene);
+template <class Robot>
+std::vector<LineChart> merging_charts_of(const SceneOf<Robot>& scene) {
+  TimedPlanner<Robot> timed(scene);
   const std::vector<Descent> dense = descents(timed, "dense");
   const std::vector<Descent> kernel = descents(timed, "kernel");
   const char* const time_label = "optimiser's thread CPU time [us]";
   const std::string name = printable(scene.name);
-  return {descent_chart(dense, name + ": cost over sweeps", "sweep", sweep_of),
-          descent_chart(dense, "over time, dense QP", time_label, time_us_of),
-          descent_chart(kernel, "over time, kernel QP", time_label, time_us_of)};
+  return {descent_chart<Robot>(dense, name + ": cost over sweeps", "sweep", sweep_of),
+          descent_chart<Robot>(dense, "over time, dense QP", time_label, time_us_of),
+          descent_chart<Robot>(kernel, "over time, kernel QP", time_label, time_us_of)};
+}
+
+}  // namespace
+
+std::vector<LineChart> merging_charts(const AnyScene& scene) {
+  return std::visit(
+      [](const auto& typed) {
+        return merging_charts_of<std::decay_t<decltype(robot_of(typed))>>(typed);
+      },
+      scene);
 }
 
 std::string draw_segmentations(const Scene& scene) {
-  TimedPlanner timed(scene);
+  TimedPlanner<Point2> timed(scene);
   SegmentPicture picture;
   picture.scene = &scene;
   picture.title = "Splits and windows of the first three sweeps";

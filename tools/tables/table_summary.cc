@@ -70,10 +70,10 @@ RunSummary summarize(const TableRun& run, const std::vector<bool>& is_common) {
   summary.segments_initial =
       spread_over(run, [](const TableCase& c) { return c.segments_initial; });
   summary.segments_final = spread_over(run, [](const TableCase& c) { return c.segments_final; });
-  const auto length_m = [](const TableCase& c) { return c.length_m; };
-  summary.length_m =
-      spread_over(run, length_m, [&](std::size_t i) { return run.cases[i].succeeded(); });
-  summary.common_length_m = spread_over(run, length_m, [&](std::size_t i) { return is_common[i]; });
+  const auto length = [](const TableCase& c) { return c.length; };
+  summary.length =
+      spread_over(run, length, [&](std::size_t i) { return run.cases[i].succeeded(); });
+  summary.common_length = spread_over(run, length, [&](std::size_t i) { return is_common[i]; });
   return summary;
 }
 
@@ -84,8 +84,8 @@ ModeSummary summarize(const TableMode& mode, const TableRun& rrt_star) {
   summary.name = mode.name;
   summary.num_common = static_cast<int>(std::count(is_common.begin(), is_common.end(), true));
   summary.rrt_star = summarize(rrt_star, is_common);
-  for (std::size_t i = 0; i < kNumTableColumns; ++i) {
-    summary.columns[i] = summarize(mode.columns[i], is_common);
+  for (const TableRun& column : mode.columns) {
+    summary.columns.push_back(summarize(column, is_common));
   }
   return summary;
 }

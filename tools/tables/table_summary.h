@@ -2,12 +2,11 @@
 // and the median, which a few interrupted cases do not move.
 #pragma once
 
-#include <array>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "tools/tables/plane_tables.h"
+#include "tools/tables/table_run.h"
 
 namespace sopt {
 
@@ -32,8 +31,8 @@ struct RunSummary {
   int num_fell_back = 0;
   StageSpread sample, optimize, total;  // of all cases
   Spread iterations, segments_initial, segments_final;
-  Spread length_m;         // of cases that succeeded
-  Spread common_length_m;  // of cases that succeeded in every run compared
+  Spread length;         // of cases that succeeded, in the robot's path metric
+  Spread common_length;  // of cases that succeeded in every run compared
 
   // Percent of the cases.
   [[nodiscard]] double success_percent() const;
@@ -51,7 +50,7 @@ struct ModeSummary {
   std::string name;
   int num_common = 0;
   RunSummary rrt_star;
-  std::array<RunSummary, kNumTableColumns> columns;
+  std::vector<RunSummary> columns;  // as the paper's
 };
 
 [[nodiscard]] ModeSummary summarize(const TableMode& mode, const TableRun& rrt_star);

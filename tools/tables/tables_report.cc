@@ -1,16 +1,14 @@
 #include "tools/tables/tables_report.h"
 
-#include <algorithm>
 #include <cstddef>
+#include <cstdio>
 #include <functional>
-#include <utility>
+#include <string>
 
 #include "tools/io/plan_report.h"
 
 namespace sopt {
 namespace {
-
-constexpr std::size_t kSeven = 3;  // in kPaperColumns
 
 std::string line_of(const std::string& name, const std::vector<std::string>& cells) {
   std::string line = format("  %-37s", name.c_str());
@@ -18,9 +16,9 @@ std::string line_of(const std::string& name, const std::vector<std::string>& cel
   return line + '\n';
 }
 
-std::string header(const std::string& name) {
-  std::vector<std::string> labels = {kPaperRrtStar.label};
-  for (const PaperColumn& column : kPaperColumns) labels.emplace_back(column.label);
+std::string header(const std::string& name, const PaperTable& paper) {
+  std::vector<std::string> labels = {paper.rrt_star.label};
+  for (const PaperColumn& column : paper.columns) labels.emplace_back(column.label);
   return name + '\n' + line_of("", labels);
 }
 
@@ -30,27 +28,31 @@ std::string ratio(double value, double to) { return to > 0.0 ? format("%.2f", va
 std::string count(double value) { return value == 0.0 ? "-" : format("%.1f", value); }
 
 // A figure of the paper's columns; RRT* alone has it or not.
-std::string paper_line(const char* name, const std::function<double(const PaperColumn&)>& value,
-                       const char* pattern, bool has_rrt_star) {
+std::string paper_line(const PaperTable& paper, const std::string& name,
+                       const std::function<double(const PaperColumn&)>& value, const char* pattern,
+                       bool has_rrt_star) {
   const auto cell = [&](const PaperColumn& column) {
     char text[32] = "";
     (void)std::snprintf(text, sizeof text, pattern, value(column));
     return std::string(text);
   };
-  std::vector<std::string> cells = {has_rrt_star ? cell(kPaperRrtStar) : "-"};
-  for (const PaperColumn& column : kPaperColumns) cells.push_back(cell(column));
+  std::vector<std::string> cells = {has_rrt_star ? cell(paper.rrt_star) : "-"};
+  for (const PaperColumn& column : paper.columns) cells.push_back(cell(column));
   return line_of(name, cells);
 }
 
-std::string paper_table() {
-  return header("\nTable I of the paper: 25 trials, Matlab, 3.7 GHz Core i9-10900K") +
-         paper_line("time in all [s]", &PaperColumn::time_s, "%.2f", true) +
-         paper_line("- without RRT*: optimisation [s]", paper_optimize_s, "%.2f", false) +
-         paper_line("- its standard deviation [s]", &PaperColumn::deviation_s, "%.2f", false) +
-         paper_line("cost [m]", &PaperColumn::cost, "%.2f", true) +
-         paper_line("iterations", &PaperColumn::iterations, "%.1f", false) +
-         paper_line("success [%]", &PaperColumn::success_percent, "%.0f", true) +
-         paper_line("segments at the end", &PaperColumn::segments_final, "%.1f", false);
+std::string paper_table(const PaperTable& paper) {
+  const auto optimize_s = [&](const PaperColumn& column) { return paper.optimize_s(column); };
+  return header(std::string("\n") + paper.title, paper) +
+         paper_line(paper, "time in all [s]", &PaperColumn::time_s, "%.2f", true) +
+         paper_line(paper, "- without RRT*: optimisation [s]", optimize_s, "%.2f", false) +
+         paper_line(paper, "- its standard deviation [s]", &PaperColumn::deviation_s, "%.2f",
+                    false) +
+         paper_line(paper, format("cost [%s]", paper.length_unit), &PaperColumn::cost, "%.2f",
+                    true) +
+         paper_line(paper, "iterations", &PaperColumn::iterations, "%.1f", false) +
+         paper_line(paper, "success [%]", &PaperColumn::success_percent, "%.0f", true) +
+         paper_line(paper, "segments at the end", &PaperColumn::segments_final, "%.1f", false);
 }
 
 using Figure = std::function<std::string(const RunSummary&)>;
@@ -66,7 +68,7 @@ Figure median_of(StageSpread RunSummary::*stage, Spread StageSpread::*clock) {
 }
 
 struct Row {
-  const char* name;
+  std::string name;
   Figure figure;
   bool has_rrt_star = true;
 };
@@ -81,7 +83,7 @@ void add_time_rows(const char* const (&names)[6], Spread StageSpread::*clock,
   rows.push_back({names[5], median_of(&RunSummary::optimize, clock), false});
 }
 
-std::vector<Row> mode_rows() {
+std::vector<Row> mode_rows(const PaperTable& paper) {
   std::vector<Row> rows;
   constexpr const char* kSerial[] = {
       "serial: time in all [us], mean", "- median",  "- sampling, mean", "- optimisation, mean",
@@ -94,10 +96,10 @@ std::vector<Row> mode_rows() {
                                        "  - median"};
   add_time_rows(kSerial, &StageSpread::serial_us, rows);
   add_time_rows(kCritical, &StageSpread::critical_us, rows);
-  rows.push_back({"cost: path length [m], successes",
-                  [](const RunSummary& run) { return length(run.length_m.mean); }});
+  rows.push_back({format("cost: path length [%s], successes", paper.length_unit),
+                  [](const RunSummary& run) { return length(run.length.mean); }});
   rows.push_back({"- cases that every column solved",
-                  [](const RunSummary& run) { return length(run.common_length_m.mean); }});
+                  [](const RunSummary& run) { return length(run.common_length.mean); }});
   rows.push_back(
       {"iterations", [](const RunSummary& run) { return count(run.iterations.mean); }, false});
   rows.push_back(
@@ -109,10 +111,11 @@ std::vector<Row> mode_rows() {
   return rows;
 }
 
-std::string mode_table(const ModeSummary& mode) {
+std::string mode_table(const PaperTable& paper, const ModeSummary& mode) {
   std::string text = header(format("\n%c: %s (%d cases, %d solved by every column)", mode.letter,
-                                   mode.name.c_str(), mode.rrt_star.num_cases, mode.num_common));
-  for (const Row& row : mode_rows()) {
+                                   mode.name.c_str(), mode.rrt_star.num_cases, mode.num_common),
+                            paper);
+  for (const Row& row : mode_rows(paper)) {
     std::vector<std::string> cells = {row.has_rrt_star ? row.figure(mode.rrt_star) : "-"};
     for (const RunSummary& column : mode.columns) cells.push_back(row.figure(column));
     text += line_of(row.name, cells);
@@ -120,33 +123,21 @@ std::string mode_table(const ModeSummary& mode) {
   return text;
 }
 
-std::vector<ClaimFigures> list_claim_figures(const std::vector<ModeSummary>& modes) {
-  std::vector<ClaimFigures> figures = {figures_of_paper()};
-  for (const ModeSummary& mode : modes) {
-    figures.push_back(figures_of(mode, false));
-    figures.push_back(figures_of(mode, true));
-  }
-  return figures;
-}
-
-std::string name_of(const std::string& source, const std::string& clock) {
-  return clock.empty() ? source : source + ", " + clock;
-}
-
-std::string relative_table(const std::vector<ModeSummary>& modes) {
-  std::string text = header("\noptimisation time relative to N = 7, means");
-  for (const ClaimFigures& figures : list_claim_figures(modes)) {
+std::string relative_table(const PaperTable& paper, const std::vector<ModeSummary>& modes) {
+  std::string text = header("\noptimisation time relative to N = 7, means", paper);
+  for (const ClaimFigures& figures : list_figures(paper, modes)) {
+    const ClaimColumn& seven = figures.columns[paper.i_fixed(7)];
     std::vector<std::string> cells = {"-"};
     for (const ClaimColumn& column : figures.columns) {
-      cells.push_back(ratio(column.optimize_time, figures.columns[kSeven].optimize_time));
+      cells.push_back(ratio(column.optimize_time, seven.optimize_time));
     }
     text += line_of(name_of(figures.source, figures.clock), cells);
   }
   return text;
 }
 
-std::string claims_text(const std::vector<Claim>& claims) {
-  std::string text = "\nthe paper's claims\n";
+std::string claims_text(const char* title, const std::vector<Claim>& claims) {
+  std::string text = std::string("\n") + title + '\n';
   for (const Claim& claim : claims) {
     text += "  " + claim.statement + '\n';
     for (const Evidence& evidence : claim.evidence) {
@@ -158,97 +149,30 @@ std::string claims_text(const std::vector<Claim>& claims) {
   return text;
 }
 
-std::string switch_table(const PlaneTables& tables, const std::vector<RunSummary>& switches) {
-  std::string text =
-      format("\none choice of the paper at a time (serial, N = auto)\n") +
-      line_of("", {"total [us]", "median", "sample", "optimise", "deviation", "length [m]",
-                   "iterations", "success %", "fell back", "segments", "time ratio"});
+std::string switch_table(const Tables& tables, const std::vector<RunSummary>& switches) {
+  std::string text = format("\none choice of the paper at a time (serial, N = auto)\n") +
+                     line_of("", {"total [us]", "median", "sample", "optimise", "deviation",
+                                  format("length [%s]", tables.paper->length_unit), "iterations",
+                                  "success %", "fell back", "segments", "time ratio"});
   const double total_us = switches.front().total.serial_us.mean;
   for (std::size_t i = 0; i < switches.size(); ++i) {
     const RunSummary& run = switches[i];
     text += line_of(tables.switches[i].label,
                     {number(run.total.serial_us.mean), number(run.total.serial_us.median),
                      number(run.sample.serial_us.mean), number(run.optimize.serial_us.mean),
-                     number(run.optimize.serial_us.deviation), length(run.common_length_m.mean),
+                     number(run.optimize.serial_us.deviation), length(run.common_length.mean),
                      format("%.2f", run.iterations.mean), format("%.1f", run.success_percent()),
                      format("%.1f %%", run.fell_back_percent()),
                      format("%.1f>%.1f", run.segments_initial.mean, run.segments_final.mean),
                      ratio(run.total.serial_us.mean, total_us)});
   }
   return text + format("  length: of the %d cases that all of them solved\n",
-                       switches.front().common_length_m.count);
-}
-
-nlohmann::ordered_json to_json(const Spread& spread) {
-  if (spread.count == 0) return nullptr;
-  return {{"count", spread.count},
-          {"mean", spread.mean},
-          {"deviation", spread.deviation},
-          {"median", spread.median}};
-}
-
-nlohmann::ordered_json to_json(const StageSpread& stage) {
-  return {{"serial_us", to_json(stage.serial_us)}, {"critical_us", to_json(stage.critical_us)}};
-}
-
-nlohmann::ordered_json to_json(const TableRun& run, const RunSummary& summary) {
-  return {{"label", run.label},
-          {"options", to_json(run.choices)},
-          {"cases", summary.num_cases},
-          {"succeeded", summary.num_succeeded},
-          {"fell_back", summary.num_fell_back},
-          {"sample", to_json(summary.sample)},
-          {"optimise", to_json(summary.optimize)},
-          {"total", to_json(summary.total)},
-          {"path_length_m", to_json(summary.length_m)},
-          {"common_path_length_m", to_json(summary.common_length_m)},
-          {"iterations", to_json(summary.iterations)},
-          {"segments_initial", to_json(summary.segments_initial)},
-          {"segments_final", to_json(summary.segments_final)}};
-}
-
-nlohmann::ordered_json to_json(const PaperColumn& column) {
-  return {{"label", column.label},
-          {"time_s", column.time_s},
-          {"optimise_deviation_s", column.deviation_s},
-          {"cost", column.cost},
-          {"iterations", column.iterations},
-          {"success_percent", column.success_percent},
-          {"segments_final", column.segments_final}};
-}
-
-nlohmann::ordered_json paper_json() {
-  nlohmann::ordered_json paper = {
-      {"rrt_star", {{"time_s", kPaperRrtStar.time_s}, {"cost", kPaperRrtStar.cost}}}};
-  for (const PaperColumn& column : kPaperColumns) paper["columns"].push_back(to_json(column));
-  return paper;
-}
-
-nlohmann::ordered_json to_json(const Claim& claim) {
-  nlohmann::ordered_json object = {{"statement", claim.statement}};
-  for (const Evidence& evidence : claim.evidence) {
-    object["evidence"].push_back({{"source", name_of(evidence.source, evidence.clock)},
-                                  {"is_met", evidence.is_met},
-                                  {"text", evidence.text}});
-  }
-  return object;
-}
-
-nlohmann::ordered_json to_json(const TableMode& mode, const ModeSummary& summary,
-                               const TableRun& rrt_star) {
-  nlohmann::ordered_json object = {{"mode", std::string(1, mode.letter)},
-                                   {"name", mode.name},
-                                   {"common_cases", summary.num_common},
-                                   {"rrt_star", to_json(rrt_star, summary.rrt_star)}};
-  for (std::size_t i = 0; i < kNumTableColumns; ++i) {
-    object["columns"].push_back(to_json(mode.columns[i], summary.columns[i]));
-  }
-  return object;
+                       switches.front().common_length.count);
 }
 
 }  // namespace
 
-TablesSummary summarize(const PlaneTables& tables) {
+TablesSummary summarize(const Tables& tables) {
   TablesSummary summary;
   for (const TableMode& mode : tables.modes) {
     summary.modes.push_back(summarize(mode, tables.rrt_star));
@@ -257,32 +181,36 @@ TablesSummary summarize(const PlaneTables& tables) {
   for (const TableRun& run : tables.switches) {
     summary.switches.push_back(summarize(run, is_common));
   }
-  summary.claims = judge_claims(list_claim_figures(summary.modes));
+  summary.claims = judge_claims(list_figures(*tables.paper, summary.modes));
   return summary;
 }
 
-std::string describe(const PlaneTables& tables, const TablesSummary& summary) {
-  std::string text = paper_table();
-  for (const ModeSummary& mode : summary.modes) text += mode_table(mode);
-  return text + relative_table(summary.modes) + claims_text(summary.claims) +
-         switch_table(tables, summary.switches);
+std::string describe(const Tables& tables, const TablesSummary& summary) {
+  const PaperTable& paper = *tables.paper;
+  std::string text = paper_table(paper);
+  for (const ModeSummary& mode : summary.modes) text += mode_table(paper, mode);
+  return text + relative_table(paper, summary.modes) +
+         claims_text("the paper's claims", summary.claims) + switch_table(tables, summary.switches);
 }
 
-nlohmann::ordered_json to_json(const PlaneTables& tables, const TablesSummary& summary) {
-  nlohmann::ordered_json document = {{"scenes", tables.num_scenes},
-                                     {"seeds", tables.num_seeds},
-                                     {"clock", "cpu"},
-                                     {"timed_calls", kNumTimedCalls},
-                                     {"cases_unplanned", num_unplanned(tables)},
-                                     {"paper", paper_json()}};
-  for (std::size_t i = 0; i < tables.modes.size(); ++i) {
-    document["modes"].push_back(to_json(tables.modes[i], summary.modes[i], tables.rrt_star));
+FamiliesSummary summarize(const std::vector<Tables>& families) {
+  FamiliesSummary summary;
+  std::vector<std::vector<ClaimFigures>> figures;
+  for (const Tables& tables : families) {
+    summary.families.push_back(summarize(tables));
+    figures.push_back(list_figures(*tables.paper, summary.families.back().modes));
   }
-  for (const Claim& claim : summary.claims) document["claims"].push_back(to_json(claim));
-  for (std::size_t i = 0; i < tables.switches.size(); ++i) {
-    document["switches"].push_back(to_json(tables.switches[i], summary.switches[i]));
+  if (figures.size() == 2) summary.claims = {judge_more_obstacles(figures[0], figures[1])};
+  return summary;
+}
+
+std::string describe(const std::vector<Tables>& families, const FamiliesSummary& summary) {
+  std::string text;
+  for (std::size_t i = 0; i < families.size(); ++i) {
+    text += describe(families[i], summary.families[i]);
   }
-  return document;
+  return summary.claims.empty() ? text
+                                : text + claims_text("of both families of scenes", summary.claims);
 }
 
 }  // namespace sopt

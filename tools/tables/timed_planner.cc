@@ -9,7 +9,8 @@ namespace sopt {
 namespace {
 
 // Room for whatever a table asks for.
-PlanOptions most_demanding_options(const Scene& scene) {
+template <class AScene>
+PlanOptions most_demanding_options(const AScene& scene) {
   PlanOptions options = make_request(scene).options;
   options.solver = WindowSolver::kDense;
   options.max_window = kLongestWindow;
@@ -26,12 +27,13 @@ StageTime to_stage_time(std::int64_t serial_ns, std::int64_t critical_ns) {
   return {1e-3 * static_cast<double>(serial_ns), 1e-3 * static_cast<double>(critical_ns)};
 }
 
-TableCase to_case(const PlanResult<Point2>& result) {
+template <class Robot>
+TableCase to_case(const PlanResult<Robot>& result) {
   TableCase c;
   c.has_plan = result.status >= PlanStatus::kOk;
   c.fell_back = result.fell_back;
-  c.sampled_length_m = result.sampler_path_length;
-  c.length_m = result.path_length;
+  c.sampled_length = result.sampler_path_length;
+  c.length = result.path_length;
   c.iterations = result.iterations;
   c.segments_initial = result.segments_initial;
   c.segments_final = result.segments_final;
@@ -40,22 +42,25 @@ TableCase to_case(const PlanResult<Point2>& result) {
 
 }  // namespace
 
-TimedPlanner::TimedPlanner(const Scene& scene)
+template <class Robot>
+TimedPlanner<Robot>::TimedPlanner(const SceneOf<Robot>& scene)
     : scene_(&scene),
       executor_(thread_cpu_clock()),
       host_(scene, most_demanding_options(scene), executor_, thread_cpu_clock()) {}
 
-PlanRequest<Point2> TimedPlanner::make_request(const AlgorithmOptions& choices,
-                                               std::uint64_t seed) const {
-  PlanRequest<Point2> request = sopt::make_request(*scene_);
+template <class Robot>
+PlanRequest<Robot> TimedPlanner<Robot>::make_request(const AlgorithmOptions& choices,
+                                                     std::uint64_t seed) const {
+  PlanRequest<Robot> request = sopt::make_request(*scene_);
   request.seed = seed;
-  apply(choices, request.options);
+  apply(choices, request.options, paper_options<Robot>());
   return request;
 }
 
-TableCase TimedPlanner::measure(const PlanRequest<Point2>& request) {
+template <class Robot>
+TableCase TimedPlanner<Robot>::measure(const PlanRequest<Robot>& request) {
   executor_.set_recording(true);
-  PlanResult<Point2> result = planner().plan(request);
+  PlanResult<Robot> result = planner().plan(request);
   // The sampler's calls come first; the optimiser makes one per sweep.
   const std::span<const TaskCall> calls = executor_.calls();
   const auto num_sweeps = static_cast<std::size_t>(result.iterations);
@@ -65,7 +70,7 @@ TableCase TimedPlanner::measure(const PlanRequest<Point2>& request) {
 
   std::array<std::int64_t, kNumTimedCalls> sample_ns{}, optimize_ns{}, total_ns{};
   for (std::size_t i = 0; i < kNumTimedCalls; ++i) {
-    result = PlanResult<Point2>{};  // gives the slot back
+    result = PlanResult<Robot>{};  // gives the slot back
     result = planner().plan(request);
     sample_ns[i] = result.times.sample_ns + result.times.shortcut_ns;
     optimize_ns[i] = result.times.optimize_ns;
@@ -79,5 +84,12 @@ TableCase TimedPlanner::measure(const PlanRequest<Point2>& request) {
                         (c.optimize.serial_us - c.optimize.critical_us);
   return c;
 }
+
+template class TimedPlanner<Point2>;
+template class TimedPlanner<Arm<4>>;
+template class TimedPlanner<Arm<5>>;
+template class TimedPlanner<Arm<6>>;
+template class TimedPlanner<Arm<7>>;
+template class TimedPlanner<Arm<8>>;
 
 }  // namespace sopt

@@ -8,7 +8,7 @@
 #include "opt/planner.h"
 #include "tools/cli/algorithm_options.h"
 #include "tools/cli/planner_host.h"
-#include "tools/io/scene_file.h"
+#include "tools/io/robot_scene.h"
 #include "tools/tables/timing_executor.h"
 
 namespace sopt {
@@ -20,15 +20,15 @@ struct StageTime {
   double critical_us = 0.0;  // one worker per stream or window
 };
 
-// One plan.
+// One plan; lengths in the robot's path metric.
 struct TableCase {
   bool has_plan = false;
   bool fell_back = false;  // the optimiser's trajectory did not pass verify
   StageTime sample;        // with shortcutting
   StageTime optimize;
-  StageTime total;                // verify and the rest too
-  double sampled_length_m = 0.0;  // as the sampler found it
-  double length_m = 0.0;          // of the plan
+  StageTime total;              // verify and the rest too
+  double sampled_length = 0.0;  // as the sampler found it
+  double length = 0.0;          // of the plan
   int iterations = 0;
   int segments_initial = 0;
   int segments_final = 0;
@@ -36,22 +36,30 @@ struct TableCase {
   [[nodiscard]] bool succeeded() const { return has_plan && !fell_back; }
 };
 
+template <class Robot>
 class TimedPlanner {
  public:
   // Throws HostError when there is no memory. `scene` must outlive it.
-  explicit TimedPlanner(const Scene& scene);
+  explicit TimedPlanner(const SceneOf<Robot>& scene);
 
   // The scene's request with `choices` over the scene's options.
-  [[nodiscard]] PlanRequest<Point2> make_request(const AlgorithmOptions& choices,
-                                                 std::uint64_t seed) const;
-  [[nodiscard]] TableCase measure(const PlanRequest<Point2>& request);
+  [[nodiscard]] PlanRequest<Robot> make_request(const AlgorithmOptions& choices,
+                                                std::uint64_t seed) const;
+  [[nodiscard]] TableCase measure(const PlanRequest<Robot>& request);
 
-  [[nodiscard]] Planner<Point2>& planner() { return host_.planner(); }
+  [[nodiscard]] Planner<Robot>& planner() { return host_.planner(); }
 
  private:
-  const Scene* scene_;
+  const SceneOf<Robot>* scene_;
   TimingExecutor executor_;
-  PlannerHost host_;
+  PlannerHost<Robot> host_;
 };
+
+extern template class TimedPlanner<Point2>;
+extern template class TimedPlanner<Arm<4>>;
+extern template class TimedPlanner<Arm<5>>;
+extern template class TimedPlanner<Arm<6>>;
+extern template class TimedPlanner<Arm<7>>;
+extern template class TimedPlanner<Arm<8>>;
 
 }  // namespace sopt

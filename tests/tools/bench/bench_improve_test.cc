@@ -82,7 +82,7 @@ TEST_F(RunBenchImproveTest, PlansEverySceneOncePerSeed) {
   ASSERT_EQ(scenes.size(), 2U);
   for (const ImproveScene& scene : scenes) {
     EXPECT_EQ(scene.name, "three_obstacles");
-    EXPECT_FALSE(scene.reference_feasible_length);
+    EXPECT_FALSE(scene.reference_length);
     ASSERT_EQ(scene.cases.size(), 3U);
     for (std::size_t i = 0; i < 3; ++i) {
       const ImproveCase& c = scene.cases[i];
@@ -103,6 +103,28 @@ TEST_F(RunBenchImproveTest, KnowsTheFirstPlanWithoutAnyBudget) {
     EXPECT_EQ(without[0].cases[i].improvements.front().path_length,
               with[0].cases[i].improvements.front().path_length);
   }
+}
+
+TEST_F(RunBenchImproveTest, PlansArmsRelativeToTheirReference) {
+  ManualClock manual(1000);
+  BenchImproveOptions options;
+  options.budgets_ms = {0.0, 1.0};
+  options.num_seeds = 2;
+  options.clock = manual.clock();
+  const std::filesystem::path folder(SOPT_SOURCE_DIR);
+  std::vector<std::filesystem::path> files = {folder / "tools/scenes/arm/arm_2_01.json"};
+  const auto known = folder / "../shared/data/scenes/mbm_panda_table_under_pick_0001.json";
+  if (std::filesystem::exists(known)) files.push_back(known);
+  const std::vector<ImproveScene> scenes = run_bench_improve(files, options);
+  EXPECT_EQ(scenes[0].name, "arm_2_01");
+  EXPECT_FALSE(scenes[0].reference_length);
+  EXPECT_EQ(num_failures(scenes), 0);
+  for (const ImproveScene& scene : scenes) {
+    ASSERT_EQ(scene.cases.size(), 2U);
+    for (const double ratio : length_ratios(scene, 1.0)) EXPECT_LT(ratio, 3.0);
+  }
+  if (files.size() == 1) GTEST_SKIP() << "no " << known;
+  EXPECT_TRUE(scenes[1].reference_length);
 }
 
 // --- reports
@@ -141,7 +163,7 @@ TEST(ImproveReportTest, JsonHasCurvesAndRecords) {
   EXPECT_EQ(document["mean_worst"], (std::vector<double>{1.2, 1.1, 1.1}));
   EXPECT_EQ(document["share_good"][0], 0.25);
   const nlohmann::ordered_json& hall = document["scenes"][0];
-  EXPECT_EQ(hall["unit"], "reference_feasible_length");
+  EXPECT_EQ(hall["unit"], "reference");
   EXPECT_EQ(hall["unit_length"], 10.0);
   EXPECT_EQ(hall["planned"], 2);
   EXPECT_EQ(hall["median"], (std::vector<double>{1.02, 1.02, 1.02}));

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "models/arm.h"
+
 namespace sopt {
 namespace {
 
@@ -98,6 +100,8 @@ TEST(AlgorithmOptions, MakeOneChoiceEach) {
   expected = {};
   expected.merge = paper.merge;
   expect_same(plan_of({"--merge-rule", "printed"}), expected);
+  expected.merge = MergeRule::kEager;
+  expect_same(plan_of({"--merge-rule", "eager"}), expected);
   expected.merge = MergeRule::kOff;
   expect_same(plan_of({"--no-merge"}), expected);
   expected = {};
@@ -109,6 +113,23 @@ TEST(AlgorithmOptions, MakeOneChoiceEach) {
 
 TEST(AlgorithmOptions, TakeAllOfThePapersChoicesAtOnce) {
   expect_same(plan_of({"--paper"}), PlanOptions::paper());
+}
+
+TEST(AlgorithmOptions, ThePapersChoicesForArmsLeaveOutWhatOnlyThePlaneHas) {
+  AlgorithmOptions paper;
+  paper.paper = true;
+  PlanOptions plan = PlanOptions::arm();
+  apply(paper, plan, paper_options<Arm<5>>());
+  PlanOptions expected = PlanOptions::paper();
+  expected.rows = RowMode::kWaypoint;
+  expected.resampling = Resampling::kOff;
+  expected.speed_mps = PlanOptions::arm().speed_mps;
+  expected.num_batches = PlanOptions::arm().num_batches;
+  expected.dt_s = PlanOptions::arm().dt_s;
+  expected.margin_m = PlanOptions::arm().margin_m;
+  expect_same(plan, expected);
+  const auto report = to_json(AlgorithmOptions(), PlanOptions::arm(), paper_options<Arm<5>>());
+  EXPECT_EQ(report["merge"], "eager");
 }
 
 TEST(AlgorithmOptions, LetTheSceneKeepItsTimesAndClearances) {

@@ -30,8 +30,8 @@ TEST_F(PlanFileTest, PlansComeBackBitByBit) {
   ASSERT_FALSE(arena.exhausted());
   const PlanResult<Point2> result = planner.plan(request);
   ASSERT_TRUE(result.plan);
-  const ReceivedPlan received =
-      load_plan(write("plan.json", plan_to_text(scene_, request, result, result.times)));
+  const ReceivedPlan<Point2> received = load_plan<Point2>(
+      write("plan.json", plan_to_text(scene_, request, result, result.times)), "point2d");
 
   const Trajectory<Point2>& sent = result.plan->trajectory();
   EXPECT_EQ(received.scene_name, "three_obstacles");
@@ -58,16 +58,16 @@ TEST_F(PlanFileTest, RefusedRequestsAreWrittenWithTheirFailure) {
   EXPECT_EQ(json["failure"]["obstacle"], "crate");
   EXPECT_TRUE(json["failure"]["amount"].is_null());
   EXPECT_EQ(json["failure"]["reason"], "too close");
-  const ReceivedPlan received = load_plan(write("plan.json", text));
+  const ReceivedPlan<Point2> received = load_plan<Point2>(write("plan.json", text), "point2d");
   EXPECT_EQ(received.status, "bad_goal");
   EXPECT_EQ(received.trajectory.horizon(), 0);
 }
 
 TEST_F(PlanFileTest, ObstaclesAreIdsElseIndicesElseWords) {
-  EXPECT_EQ(obstacle_to_json(scene_, 0), 0);
-  EXPECT_EQ(obstacle_to_json(scene_, 1), "crate");
-  EXPECT_EQ(obstacle_to_json(scene_, kBoundsObstacle), "bounds");
-  EXPECT_TRUE(obstacle_to_json(scene_, kNoObstacle).is_null());
+  EXPECT_EQ(obstacle_to_json(scene_.obstacle_ids, 0), 0);
+  EXPECT_EQ(obstacle_to_json(scene_.obstacle_ids, 1), "crate");
+  EXPECT_EQ(obstacle_to_json(scene_.obstacle_ids, kBoundsObstacle), "bounds");
+  EXPECT_TRUE(obstacle_to_json(scene_.obstacle_ids, kNoObstacle).is_null());
 }
 
 TEST_F(PlanFileTest, EveryStatusIsReadBack) {
@@ -79,7 +79,8 @@ TEST_F(PlanFileTest, EveryStatusIsReadBack) {
         PlanStatus::kBadInput}) {
     nlohmann::json plan = good;
     plan["status"] = to_string(status);
-    EXPECT_EQ(load_plan(write("plan.json", plan.dump())).status, to_string(status));
+    EXPECT_EQ(load_plan<Point2>(write("plan.json", plan.dump()), "point2d").status,
+              to_string(status));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "models/pose3.h"
 #include "tests/tools/temporary_folder.h"
 #include "tools/io/input_error.h"
+#include "tools/io/json_text.h"
 
 namespace sopt {
 namespace {
@@ -250,8 +251,7 @@ TEST_F(RobotFileTest, WrittenFilesReadTheSame) {
   json_["self_collision_link_pairs"] =
       nlohmann::json::parse(R"([["hand", "base"], ["four", "two"]])");
   const RobotModel model = load();
-  write_robot_file(folder() / "copy.json", model);
-  const RobotModel copy = load_robot_file(folder() / "copy.json");
+  const RobotModel copy = load_robot_file(write("copy.json", to_text(robot_to_json(model))));
   EXPECT_EQ(copy.links, model.links);
   EXPECT_EQ(copy.active_joints, model.active_joints);
   EXPECT_EQ(copy.pairs, model.pairs);

@@ -9,6 +9,7 @@
 #include "tests/tools/temporary_folder.h"
 #include "tools/io/capsule_fit.h"
 #include "tools/io/input_error.h"
+#include "tools/io/json_text.h"
 #include "tools/io/mesh_file.h"
 #include "tools/io/robot_file.h"
 
@@ -118,9 +119,9 @@ TEST_F(UrdfRobotTest, FramesAreProductsOfItsNumbers) {
 
 TEST_F(UrdfRobotTest, RobotFilesMadeOfItMoveTheSame) {
   const RobotModel model = load().model;
-  write_robot_file(folder() / "robot.json", model);
   const NamedArm<4> expected = make_arm<4>(model, {});
-  const NamedArm<4> found = make_arm<4>(load_robot_file(folder() / "robot.json"), {});
+  const NamedArm<4> found =
+      make_arm<4>(load_robot_file(write("robot.json", to_text(robot_to_json(model)))), {});
   EXPECT_EQ(found.joint_names, expected.joint_names);
   ASSERT_EQ(found.arm.num_capsules(), expected.arm.num_capsules());
   Random random(1);
@@ -207,6 +208,25 @@ TEST_F(UrdfRobotTest, NamesWhatIsWrong) {
                "link \"shoulder\": box size is 0.0; it must be > 0, from 1e-9 to 1e6");
   expect_error("<origin xyz=\"0.4 0 0\"/>", "<origin xyz=\"4e9 0 0\"/>",
                "joint \"flange\": origin is 4000000000.0; it must be a number from -1e6 to 1e6");
+  expect_error("scale=\"0.5 0.5 0.5\"", "scale=\"0.5 0 0.5\"",
+               "link \"forearm\": mesh scale has a 0; it must have none");
+}
+
+// The parser leaves such shapes out and goes on, which would leave the arm without them.
+TEST_F(UrdfRobotTest, RefusesShapesThatTheParserLeavesOut) {
+  const std::string in_upper_arm = "; Could not parse visual element for Link [upper_arm]";
+  expect_error("radius=\"0.15\"", "radius=\"nan\"",
+               "not a valid URDF: radius [nan] is not a valid float" + in_upper_arm);
+  expect_error("radius=\"0.15\"", "",
+               "not a valid URDF: Sphere shape must have a radius attribute" + in_upper_arm);
+  expect_error("<sphere radius=\"0.15\"/>", "<cone radius=\"0.15\"/>",
+               "not a valid URDF: Unknown geometry type 'cone'" + in_upper_arm);
+  expect_error("length=\"0.6\"", "length=\"inf\"",
+               "not a valid URDF: length [inf] is not a valid float; Could not parse collision "
+               "element for Link [base]");
+  expect_error("size=\"0.1 0.2 0.9\"", "size=\"0.1 0.2\"",
+               "not a valid URDF: Parser found 2 elements but 3 expected while parsing vector [0.1 "
+               "0.2]; Could not parse collision element for Link [shoulder]");
 }
 
 // What the parser itself refuses is passed on in its words.

@@ -11,13 +11,13 @@
 namespace sopt {
 namespace {
 
-PeerCase solved(std::uint64_t seed, std::int64_t time_ns, double length_m) {
+PeerCase solved(std::uint64_t seed, std::int64_t time_ns, double length) {
   PeerCase c;
   c.scene = "plane";
   c.seed = seed;
   c.is_solved = true;
   c.time_ns = time_ns;
-  c.length_m = length_m;
+  c.length = length;
   c.verdict = PathVerdict::kKeepsMargin;
   return c;
 }
@@ -32,7 +32,7 @@ PeerCase failed(std::uint64_t seed) {
 
 PeerRatio ratio_of(const std::vector<PeerRun>& runs, const std::string& ours,
                    const std::string& theirs, PeerFigure figure) {
-  for (const PeerRatio& ratio : compare(runs)) {
+  for (const PeerRatio& ratio : compare(runs, SceneKind::kPlane)) {
     if (ratio.ours == ours && ratio.theirs == theirs && ratio.figure == figure) return ratio;
   }
   ADD_FAILURE() << "no ratio " << ours << " / " << theirs;
@@ -75,6 +75,26 @@ TEST(CompareTest, ATargetIsMetUpToItsValueAndNotWithoutCases) {
   EXPECT_FALSE(ratio_of({}, kSoptFirstPath, kOmplRrtStar, PeerFigure::kMedianTime).is_met());
 }
 
+TEST(CompareTest, ArmsHaveTargetsOfTheirOwn) {
+  const auto target_of = [](SceneKind kind, const std::string& theirs) {
+    for (const PeerRatio& ratio : compare({}, kind)) {
+      if (ratio.ours == kSoptFirstPath && ratio.theirs == theirs) return ratio.target;
+    }
+    return -1.0;
+  };
+  EXPECT_EQ(target_of(SceneKind::kPlane, kOmplRrtStar), 0.10);
+  EXPECT_EQ(target_of(SceneKind::kArm, kOmplRrtStar), 0.0);
+  EXPECT_EQ(target_of(SceneKind::kPlane, kOmplRrtConnect), 0.0);
+  EXPECT_EQ(target_of(SceneKind::kArm, kOmplRrtConnect), 1.0);
+}
+
+TEST(DescribePeersTest, LengthsHaveTheUnitOfTheirScenes) {
+  const std::vector<PeerRun> runs = {{"p", {solved(1, 4000, 1.0)}}};
+  EXPECT_NE(describe_peers(runs, SceneKind::kPlane).find("len [m]"), std::string::npos);
+  EXPECT_NE(describe_peers(runs, SceneKind::kArm).find("len [rad]"), std::string::npos);
+  EXPECT_EQ(to_json(runs, SceneKind::kArm, PeersOptions{}).at("length_unit"), "rad");
+}
+
 TEST(DescribeRatiosTest, SayMetOrMissedOnlyWhereThereIsATarget) {
   const std::vector<PeerRatio> ratios = {
       {.ours = "a", .theirs = "b", .target = 1.0, .value = 0.5, .num_cases = 1},
@@ -100,7 +120,7 @@ TEST(PeersJsonTest, CountsWhatCollidesAsBelowTheMarginToo) {
   collides.verdict = PathVerdict::kCollides;
   const auto document =
       to_json(std::vector<PeerRun>{{kOmplRrtStar, {solved(1, 1, 1.0), below, collides, failed(4)}}},
-              PeersOptions{});
+              SceneKind::kPlane, PeersOptions{});
   const auto& peer = document.at("peers").at(0);
   EXPECT_EQ(peer.at("cases"), 4);
   EXPECT_EQ(peer.at("solved"), 3);
@@ -111,7 +131,8 @@ TEST(PeersJsonTest, CountsWhatCollidesAsBelowTheMarginToo) {
 }
 
 TEST(DescribePeersTest, FailuresCountInTheSuccessNotInTheTimesAndAreNamed) {
-  const std::string text = describe_peers({{"p", {solved(1, 4000, 1.0), failed(2), failed(3)}}});
+  const std::string text =
+      describe_peers({{"p", {solved(1, 4000, 1.0), failed(2), failed(3)}}}, SceneKind::kPlane);
   EXPECT_NE(text.find("1/3 "), std::string::npos) << text;
   EXPECT_NE(text.find("not solved by p: plane, 2 x Timeout\n"), std::string::npos) << text;
   EXPECT_NE(text.find("4.0 "), std::string::npos) << text;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/tools/temporary_folder.h"
+#include "tools/peers/sopt_peer.h"
 
 namespace sopt {
 namespace {
@@ -23,15 +24,13 @@ class CheckPathTest : public TemporaryFolderTest {
  protected:
   void SetUp() override {
     TemporaryFolderTest::SetUp();
-    scene_ = load_scene(write("wall.json", kWall));
-    problem_ = make_peer_problem(scene_);
+    scene_ = load_any_scene(write("wall.json", kWall));
   }
   [[nodiscard]] PathVerdict check(const std::vector<Vec2>& path) const {
-    return check_path(problem_, path);
+    return check_path(scene_, {path.begin(), path.end()});
   }
 
-  Scene scene_;
-  PeerProblem problem_;
+  AnyScene scene_;
 };
 
 TEST_F(CheckPathTest, AroundTheWallKeepsTheMargin) {
@@ -59,25 +58,85 @@ TEST_F(CheckPathTest, TheBoundsAreWalls) {
 
 TEST_F(CheckPathTest, NoPathIsNotChecked) { EXPECT_EQ(check({}), PathVerdict::kNotChecked); }
 
+// A shipped scene whose straight motion is blocked.
+class CheckArmPathTest : public ::testing::Test {
+ protected:
+  using Arm5 = ArmScene<5>;
+  CheckArmPathTest()
+      : scene_(load_any_scene(std::filesystem::path(SOPT_SOURCE_DIR) /
+                              "tools/scenes/arm/arm_2_01.json")) {}
+
+  [[nodiscard]] const Arm5& arm() const { return std::get<Arm5>(scene_); }
+  [[nodiscard]] std::vector<Eigen::VectorXd> plan() const {
+    const auto peer = make_sopt_peer("sopt", {SoptStage::kVerifiedPlan});
+    return peer->prepare(scene_)->run(1).path;
+  }
+
+  AnyScene scene_;
+};
+
+TEST_F(CheckArmPathTest, AVerifiedPlanTouchesNothing) {
+  const std::vector<Eigen::VectorXd> path = plan();
+  ASSERT_FALSE(path.empty());
+  EXPECT_NE(check_path(scene_, path), PathVerdict::kCollides);
+  EXPECT_NE(check_path(scene_, path), PathVerdict::kNotChecked);
+}
+
+TEST_F(CheckArmPathTest, StraightThroughAnObstacleCollidesThoughItsEndsAreFree) {
+  const std::vector<Eigen::VectorXd> ends = {arm().start, arm().goal};
+  EXPECT_EQ(check_path(scene_, {ends[0], ends[0]}), PathVerdict::kKeepsMargin);
+  EXPECT_EQ(check_path(scene_, {ends[1], ends[1]}), PathVerdict::kKeepsMargin);
+  EXPECT_EQ(check_path(scene_, ends), PathVerdict::kCollides);
+}
+
+TEST_F(CheckArmPathTest, BetweenTheMarginAndContactIsBelowIt) {
+  // The last share of the straight motion before it touches.
+  double free = 0.0;
+  double touching = 1.0;
+  const auto at = [this](double share) {
+    return Eigen::VectorXd(arm().arm.interpolate(arm().start, arm().goal, share));
+  };
+  const auto verdict = [&](double share) { return check_path(scene_, {arm().start, at(share)}); };
+  while (touching - free > 1e-3) {
+    const double middle = 0.5 * (free + touching);
+    (verdict(middle) == PathVerdict::kCollides ? touching : free) = middle;
+  }
+  EXPECT_EQ(verdict(free), PathVerdict::kBelowMargin);
+}
+
 using Call = std::pair<std::string, std::uint64_t>;  // peer and seed; seed 0: prepare
 
 // Notes its calls; what it answers is known.
-class NotingPeer final : public Peer {
+class NotingSolver final : public PeerSolver {
  public:
-  NotingPeer(std::string name, bool is_slow, std::vector<Call>& calls)
-      : Peer(std::move(name), is_slow), calls_(&calls) {}
+  NotingSolver(std::string name, std::vector<Call>& calls)
+      : name_(std::move(name)), calls_(&calls) {}
 
-  void prepare(const PeerProblem& /*problem*/) override { calls_->emplace_back(name(), 0); }
   PeerResult run(std::uint64_t seed) override {
-    calls_->emplace_back(name(), seed);
+    calls_->emplace_back(name_, seed);
     PeerResult result;
     result.is_solved = seed != 2;
     result.failure = result.is_solved ? "" : "gave up";
     result.time_ns = static_cast<std::int64_t>(10 * seed);
     result.num_allocations = 3;
-    result.length_m = static_cast<double>(seed);
-    result.path = {{1, 7}, {9, 7}};
+    result.length = static_cast<double>(seed);
+    result.path = {Eigen::Vector2d(1, 7), Eigen::Vector2d(9, 7)};
     return result;
+  }
+
+ private:
+  std::string name_;
+  std::vector<Call>* calls_;
+};
+
+class NotingPeer final : public Peer {
+ public:
+  NotingPeer(std::string name, bool is_slow, std::vector<Call>& calls)
+      : Peer(std::move(name), is_slow), calls_(&calls) {}
+
+  [[nodiscard]] std::unique_ptr<PeerSolver> prepare(const AnyScene& /*scene*/) const override {
+    calls_->emplace_back(name(), 0);
+    return std::make_unique<NotingSolver>(name(), *calls_);
   }
 
  private:
@@ -91,7 +150,9 @@ class RunPeersTest : public TemporaryFolderTest {
     peers_.push_back(std::make_unique<NotingPeer>("a", false, calls_));
     peers_.push_back(std::make_unique<NotingPeer>("b", false, calls_));
     peers_.push_back(std::make_unique<NotingPeer>("slow", true, calls_));
-    runs_ = run_peers({write("wall.json", kWall)}, {.num_seeds = 3, .num_slow_seeds = 1}, peers_);
+    std::vector<AnyScene> scenes;
+    scenes.push_back(load_any_scene(write("wall.json", kWall)));
+    runs_ = run_peers(scenes, {.num_seeds = 3, .num_slow_seeds = 1}, peers_);
   }
 
   std::vector<Call> calls_;
@@ -123,7 +184,7 @@ TEST_F(RunPeersTest, ACaseSaysWhatThePeerDidAndWhatItsPathIsWorth) {
   EXPECT_EQ(c.failure, "gave up");
   EXPECT_EQ(c.time_ns, 20);
   EXPECT_EQ(c.num_allocations, 3);
-  EXPECT_EQ(c.length_m, 2.0);
+  EXPECT_EQ(c.length, 2.0);
   EXPECT_EQ(c.verdict, PathVerdict::kCollides);
 }
 

@@ -18,17 +18,18 @@ PlanOptions options_of(const TableRun& run) {
 TEST(PlaneTablesTest, ColumnsAreThoseOfThePaper) {
   const int num_segments[] = {1, 3, 5, 7, 9, 7, 9};
   for (const TableMode& mode : list_plane_tables().modes) {
-    for (std::size_t i = 0; i < kNumTableColumns; ++i) {
+    ASSERT_EQ(mode.columns.size(), kPlaneColumns.size());
+    for (std::size_t i = 0; i < kPlaneColumns.size(); ++i) {
       const PlanOptions options = options_of(mode.columns[i]);
       EXPECT_EQ(options.num_segments, num_segments[i]);
       EXPECT_EQ(options.merge != MergeRule::kOff, i >= 5) << mode.letter << ' ' << i;
-      EXPECT_EQ(mode.columns[i].label, kPaperColumns[i].label);
+      EXPECT_EQ(mode.columns[i].label, kPlaneColumns[i].label);
     }
   }
 }
 
 TEST(PlaneTablesTest, ModesAreThePaperWithEitherQpAndTheDefaults) {
-  const PlaneTables tables = list_plane_tables();
+  const Tables tables = list_plane_tables();
   ASSERT_EQ(tables.modes.size(), 3U);
   const PlanOptions a = options_of(tables.modes[0].columns[5]);
   EXPECT_EQ(a.solver, WindowSolver::kDense);
@@ -45,7 +46,7 @@ TEST(PlaneTablesTest, ModesAreThePaperWithEitherQpAndTheDefaults) {
 }
 
 TEST(PlaneTablesTest, EverySwitchDiffersFromTheDefaultsInOneChoice) {
-  const PlaneTables tables = list_plane_tables();
+  const Tables tables = list_plane_tables();
   const auto defaults = to_json(tables.switches.front().choices);
   for (std::size_t i = 1; i + 1 < tables.switches.size(); ++i) {
     const auto choices = to_json(tables.switches[i].choices);
@@ -58,18 +59,18 @@ TEST(PlaneTablesTest, EverySwitchDiffersFromTheDefaultsInOneChoice) {
 }
 
 TEST(PlaneTablesTest, ACaseHasWhatItsColumnAsksFor) {
-  const PlaneTables tables = run_plane_tables(one_scene(), 2);
+  const Tables tables = run_plane_tables(one_scene(), 2);
   EXPECT_EQ(tables.num_scenes, 1);
   EXPECT_EQ(num_unplanned(tables), 0);
   ASSERT_EQ(tables.rrt_star.cases.size(), 2U);
   for (const TableCase& c : tables.rrt_star.cases) {
     EXPECT_EQ(c.iterations, 0);
-    EXPECT_DOUBLE_EQ(c.length_m, c.sampled_length_m);
+    EXPECT_DOUBLE_EQ(c.length, c.sampled_length);
     EXPECT_DOUBLE_EQ(c.total.serial_us, c.sample.serial_us);
   }
   const int num_segments[] = {1, 3, 5, 7, 9, 7, 9};
   for (const TableMode& mode : tables.modes) {
-    for (std::size_t i = 0; i < kNumTableColumns; ++i) {
+    for (std::size_t i = 0; i < kPlaneColumns.size(); ++i) {
       ASSERT_EQ(mode.columns[i].cases.size(), 2U);
       for (const TableCase& c : mode.columns[i].cases) {
         EXPECT_EQ(c.segments_initial, num_segments[i]) << mode.letter;
@@ -85,17 +86,17 @@ TEST(PlaneTablesTest, ACaseHasWhatItsColumnAsksFor) {
 }
 
 TEST(PlaneTablesTest, EitherQpTakesTheSameSweepsToTheSameLength) {
-  const PlaneTables tables = run_plane_tables(one_scene(), 1);
-  for (std::size_t i = 0; i < kNumTableColumns; ++i) {
+  const Tables tables = run_plane_tables(one_scene(), 1);
+  for (std::size_t i = 0; i < kPlaneColumns.size(); ++i) {
     const TableCase& dense = tables.modes[0].columns[i].cases.front();
     const TableCase& kernel = tables.modes[1].columns[i].cases.front();
     EXPECT_EQ(dense.iterations, kernel.iterations);
-    EXPECT_NEAR(dense.length_m, kernel.length_m, 1e-6);
+    EXPECT_NEAR(dense.length, kernel.length, 1e-6);
   }
 }
 
 TEST(PlaneTablesTest, CasesWithoutAPlanAreCounted) {
-  PlaneTables tables = list_plane_tables();
+  Tables tables = list_plane_tables();
   tables.rrt_star.cases.resize(2);
   tables.modes[1].columns[3].cases.resize(1);
   tables.switches[4].cases.resize(1);

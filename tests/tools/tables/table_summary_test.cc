@@ -7,10 +7,10 @@
 namespace sopt {
 namespace {
 
-TableCase good_case(double length_m, double optimize_us = 10.0) {
+TableCase good_case(double length, double optimize_us = 10.0) {
   TableCase c;
   c.has_plan = true;
-  c.length_m = length_m;
+  c.length = length;
   c.optimize = {optimize_us, 0.5 * optimize_us};
   c.iterations = 3;
   c.segments_initial = 7;
@@ -18,8 +18,8 @@ TableCase good_case(double length_m, double optimize_us = 10.0) {
   return c;
 }
 
-TableCase refused_case(double length_m) {
-  TableCase c = good_case(length_m);
+TableCase refused_case(double length) {
+  TableCase c = good_case(length);
   c.fell_back = true;
   return c;
 }
@@ -51,8 +51,8 @@ TEST(TableSummaryTest, LengthsAreOfSuccessesAndTimesOfAllCases) {
   EXPECT_EQ(summary.num_cases, 3);
   EXPECT_NEAR(summary.success_percent(), 200.0 / 3.0, 1e-12);
   EXPECT_NEAR(summary.fell_back_percent(), 100.0 / 3.0, 1e-12);
-  EXPECT_DOUBLE_EQ(summary.length_m.mean, 31.0);
-  EXPECT_DOUBLE_EQ(summary.common_length_m.mean, 30.0);
+  EXPECT_DOUBLE_EQ(summary.length.mean, 31.0);
+  EXPECT_DOUBLE_EQ(summary.common_length.mean, 30.0);
   EXPECT_EQ(summary.optimize.serial_us.count, 3);
   EXPECT_DOUBLE_EQ(summary.optimize.serial_us.mean, 20.0);
   EXPECT_DOUBLE_EQ(summary.optimize.critical_us.mean, 10.0);
@@ -65,11 +65,12 @@ TEST(TableSummaryTest, ACaseWithoutAPlanIsNoSuccessAndNoFallBack) {
   const RunSummary summary = summarize(run_of({TableCase{}}), {false});
   EXPECT_DOUBLE_EQ(summary.success_percent(), 0.0);
   EXPECT_EQ(summary.num_fell_back, 0);
-  EXPECT_EQ(summary.length_m.count, 0);
+  EXPECT_EQ(summary.length.count, 0);
 }
 
 TEST(TableSummaryTest, CommonCasesAreThoseThatEveryColumnSolved) {
   TableMode mode;
+  mode.columns.resize(7);
   for (TableRun& column : mode.columns) {
     column.cases = {good_case(30.0), good_case(40.0), good_case(50.0)};
   }
@@ -78,10 +79,10 @@ TEST(TableSummaryTest, CommonCasesAreThoseThatEveryColumnSolved) {
   const ModeSummary summary =
       summarize(mode, run_of({good_case(60.0), good_case(70.0), good_case(80.0)}));
   EXPECT_EQ(summary.num_common, 1);
-  EXPECT_DOUBLE_EQ(summary.rrt_star.common_length_m.mean, 70.0);
-  EXPECT_DOUBLE_EQ(summary.rrt_star.length_m.mean, 70.0);
-  EXPECT_DOUBLE_EQ(summary.columns[0].common_length_m.mean, 40.0);
-  EXPECT_DOUBLE_EQ(summary.columns[2].length_m.mean, 45.0);
+  EXPECT_DOUBLE_EQ(summary.rrt_star.common_length.mean, 70.0);
+  EXPECT_DOUBLE_EQ(summary.rrt_star.length.mean, 70.0);
+  EXPECT_DOUBLE_EQ(summary.columns[0].common_length.mean, 40.0);
+  EXPECT_DOUBLE_EQ(summary.columns[2].length.mean, 45.0);
 }
 
 }  // namespace

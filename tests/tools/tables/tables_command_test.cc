@@ -36,6 +36,9 @@ class TablesCommandTest : public TemporaryFolderTest {
   [[nodiscard]] static std::string scene(const char* name = "plane_12.json") {
     return std::string(SOPT_SOURCE_DIR "/tools/scenes/plane/") + name;
   }
+  [[nodiscard]] static std::string arm_scene(const char* name) {
+    return std::string(SOPT_SOURCE_DIR "/tools/scenes/arm/") + name;
+  }
   [[nodiscard]] bool says(const std::string& text) const {
     return output_.find(text) != std::string::npos;
   }
@@ -91,12 +94,63 @@ TEST_F(TablesCommandTest, AnswersOneWhenACaseHasNoPlan) {
 }
 
 TEST_F(TablesCommandTest, NamesTheRobotsThatHaveTables) {
-  EXPECT_EQ(run("arm"), 2);
-  EXPECT_NE(error_.find("\"arm\" is not allowed; it must be \"plane\""), std::string::npos)
+  EXPECT_EQ(run("mobile"), 2);
+  EXPECT_NE(error_.find("\"mobile\" is not allowed; it must be one of \"plane\", \"arm\""),
+            std::string::npos)
       << error_;
   EXPECT_EQ(error_.find('\n'), std::string::npos);
   EXPECT_EQ(run(""), 2);
   EXPECT_NE(error_.find("ROBOT is required"), std::string::npos) << error_;
+}
+
+TEST_F(TablesCommandTest, MakesBothHalvesOfTheArmsTable) {
+  const std::filesystem::path pictures = folder() / "pictures";
+  EXPECT_EQ(run("arm " + arm_scene("arm_2_05.json") + ' ' + arm_scene("arm_8_04.json") +
+                " --seeds 1 --json " + (folder() / "t.json").string() + " --svg-dir " +
+                pictures.string()),
+            0);
+  EXPECT_TRUE(says("2 scenes x 1 seeds"));
+  EXPECT_TRUE(says("Table II of the paper, 2 obstacles"));
+  EXPECT_TRUE(says("Table II of the paper, 7 to 9 obstacles"));
+  EXPECT_TRUE(says("D: the defaults without their window check (1 cases"));
+  EXPECT_TRUE(says("10 % at N = 1"));
+  EXPECT_TRUE(says("of both families of scenes"));
+  EXPECT_TRUE(says("length [rad]"));
+  EXPECT_FALSE(says("nan"));
+
+  const auto document = nlohmann::json::parse(read_file(folder() / "t.json"));
+  EXPECT_EQ(document["schema"], 1);
+  ASSERT_EQ(document["families"].size(), 2U);
+  EXPECT_EQ(document["claims"].size(), 1U);
+  const auto& many = document["families"][1];
+  EXPECT_EQ(many["paper"]["columns"][0]["success_percent"], 10.0);
+  ASSERT_EQ(many["modes"].size(), 4U);
+  ASSERT_EQ(many["modes"][0]["columns"].size(), 8U);
+  const auto& options = many["modes"][0]["columns"][5]["options"];
+  EXPECT_EQ(options["qp"], "dense");
+  EXPECT_EQ(options["rows"], "waypoint");
+  EXPECT_EQ(options["resample"], "off");
+  EXPECT_EQ(options["merge"], "printed");
+  EXPECT_EQ(many["modes"][2]["columns"][1]["path_length_rad"]["count"], 1);
+
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(pictures)) {
+    names.insert(entry.path().filename().string());
+    EXPECT_GT(read_svg(read_file(entry.path())).size(), 20U) << entry.path();
+  }
+  EXPECT_EQ(names, (std::set<std::string>{"concept_arm.svg", "merging_arm.svg"}));
+}
+
+TEST_F(TablesCommandTest, RefusesScenesThatAreInNoHalfOfTheArmsTable) {
+  EXPECT_EQ(run("arm " + scene()), 2);
+  EXPECT_NE(error_.find("plane_12.json: robot: point2d is not an arm"), std::string::npos)
+      << error_;
+  const std::filesystem::path free = write("free.json", R"({
+    "name": "free", "robot": "lr_mate_200id_7l", "start": [0, 0, 0, 0, 0],
+    "goal": [0.5, 0, 0, 0, 0], "obstacles": []})");
+  EXPECT_EQ(run("arm " + free.string()), 2);
+  EXPECT_NE(error_.find("free.json: obstacles: 0 is not allowed"), std::string::npos) << error_;
+  EXPECT_EQ(output_, "");
 }
 
 TEST_F(TablesCommandTest, RefusesWhatItCannotDoBeforeAnyWork) {

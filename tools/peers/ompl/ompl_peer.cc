@@ -1,6 +1,7 @@
 #include "tools/peers/ompl/ompl_peer.h"
 
 #include <ompl/base/ProblemDefinition.h>
+#include <ompl/base/goals/GoalState.h>
 #include <ompl/base/objectives/PathLengthOptimizationObjective.h>
 #include <ompl/config.h>
 #include <ompl/geometric/PathGeometric.h>
@@ -27,33 +28,29 @@ namespace og = ompl::geometric;
 // Without a solution by then a run has failed.
 constexpr double kFirstSolutionLimit_s = 10.0;
 
-ob::SpaceInformationPtr make_space(const PeerProblem& problem, OmplMotionTest test) {
-  const auto space = std::make_shared<ob::RealVectorStateSpace>(2);
-  const Aabb2 box = problem.scene->robot.sampling_box(*problem.scene->world, problem.rule);
-  ob::RealVectorBounds bounds(2);
-  for (int axis = 0; axis < 2; ++axis) {
-    bounds.setLow(static_cast<unsigned>(axis), box.lower[axis]);
-    bounds.setHigh(static_cast<unsigned>(axis), box.upper[axis]);
-  }
-  space->setBounds(bounds);
+template <class Robot>
+ob::SpaceInformationPtr make_space(const PeerProblem<Robot>& problem, OmplMotionTest test) {
+  const auto space = make_robot_space(problem);
   auto information = std::make_shared<ob::SpaceInformation>(space);
-  information->setStateValidityChecker(std::make_shared<WorldStateChecker>(information, problem));
-  information->setStateValidityCheckingResolution(kResolution_m / space->getMaximumExtent());
+  information->setStateValidityChecker(
+      std::make_shared<WorldStateChecker<Robot>>(information, problem));
+  information->setStateValidityCheckingResolution(kResolution / space->getMaximumExtent());
   if (test == OmplMotionTest::kExact) {
-    information->setMotionValidator(std::make_shared<WorldMotionChecker>(information, problem));
+    information->setMotionValidator(
+        std::make_shared<WorldMotionChecker<Robot>>(information, problem));
   }
   information->setup();
   return information;
 }
 
+template <class Robot>
 ob::ProblemDefinitionPtr make_definition(const ob::SpaceInformationPtr& space,
-                                         const PeerProblem& problem, bool stops_at_first) {
+                                         const PeerProblem<Robot>& problem, bool stops_at_first) {
+  const Robot& robot = robot_of(*problem.scene);
   ob::ScopedState<ob::RealVectorStateSpace> start(space);
   ob::ScopedState<ob::RealVectorStateSpace> goal(space);
-  for (int axis = 0; axis < 2; ++axis) {
-    start[static_cast<unsigned>(axis)] = problem.request.start[axis];
-    goal[static_cast<unsigned>(axis)] = problem.request.goal[axis];
-  }
+  put<Robot>(within_one_turn(robot, problem.request.start), start.get());
+  put<Robot>(within_one_turn(robot, problem.request.goal), goal.get());
   auto definition = std::make_shared<ob::ProblemDefinition>(space);
   definition->setStartAndGoalStates(start, goal);
   const auto objective = std::make_shared<ob::PathLengthOptimizationObjective>(space);
@@ -87,43 +84,53 @@ ob::PlannerTerminationCondition cpu_limit(double budget_s) {
   });
 }
 
-std::vector<Vec2> points_of(og::PathGeometric& path) {
-  std::vector<Vec2> points;
-  for (const ob::State* state : path.getStates()) points.push_back(point_of(state));
+template <class Robot>
+std::vector<Eigen::VectorXd> points_of(og::PathGeometric& path) {
+  std::vector<Eigen::VectorXd> points;
+  for (const ob::State* state : path.getStates()) points.emplace_back(config_of<Robot>(state));
   return points;
 }
 
-class OmplPeer final : public Peer {
- public:
-  // No budget: stops at the first solution.
-  OmplPeer(std::string name, OmplPlanner planner, OmplMotionTest test,
-           std::optional<double> budget_s)
-      : Peer(std::move(name), budget_s.has_value()),
-        planner_(planner),
-        test_(test),
-        budget_s_(budget_s) {
-    ompl::msg::noOutputHandler();
-  }
+// Why a problem cannot be solved; empty: nothing known. BIT* waits for another goal, asleep, when
+// the only one is not valid.
+std::string refusal_of(const ob::SpaceInformation& space, const ob::ProblemDefinition& definition) {
+  if (!space.isValid(definition.getStartState(0))) return "Invalid start";
+  const auto* const goal = definition.getGoal()->as<ob::GoalState>();
+  return space.isValid(goal->getState()) ? "" : "Invalid goal";
+}
 
-  void prepare(const PeerProblem& problem) override { problem_ = problem; }
+struct OmplVariant {
+  OmplPlanner planner;
+  OmplMotionTest test;
+  std::optional<double> budget_s;  // none: stops at the first solution
+};
+
+template <class Robot>
+class OmplSolver final : public PeerSolver {
+ public:
+  OmplSolver(const PeerProblem<Robot>& problem, const OmplVariant& variant)
+      : problem_(problem), variant_(variant) {}
 
   PeerResult run(std::uint64_t seed) override {
     ompl::RNG::setSeed(static_cast<std::uint_fast32_t>(seed));  // of generators made from here on
-    const ob::SpaceInformationPtr space = make_space(problem_, test_);
-    const ob::ProblemDefinitionPtr definition = make_definition(space, problem_, !budget_s_);
-    const ob::PlannerPtr planner = make_planner(planner_, space);
+    const ob::SpaceInformationPtr space = make_space(problem_, variant_.test);
+    const ob::ProblemDefinitionPtr definition =
+        make_definition(space, problem_, !variant_.budget_s);
+    const ob::PlannerPtr planner = make_planner(variant_.planner, space);
     planner->setProblemDefinition(definition);
     planner->setup();
     og::PathSimplifier simplifier(space, definition->getGoal());
     const ob::PlannerTerminationCondition limit =
-        cpu_limit(budget_s_.value_or(kFirstSolutionLimit_s));
+        cpu_limit(variant_.budget_s.value_or(kFirstSolutionLimit_s));
 
     PeerResult result;
+    result.failure = refusal_of(*space, *definition);
+    if (!result.failure.empty()) return result;
     ob::PlannerStatus status;
     measure(result, [&] {
       status = planner->solve(limit);
       result.is_solved = status == ob::PlannerStatus::EXACT_SOLUTION;
-      if (result.is_solved && planner_ == OmplPlanner::kRrtConnectSimplify) {
+      if (result.is_solved && variant_.planner == OmplPlanner::kRrtConnectSimplify) {
         simplifier.simplifyMax(*definition->getSolutionPath()->as<og::PathGeometric>());
       }
     });
@@ -132,16 +139,29 @@ class OmplPeer final : public Peer {
       return result;
     }
     auto& path = *definition->getSolutionPath()->as<og::PathGeometric>();
-    result.length_m = path.length();
-    result.path = points_of(path);
+    result.length = path.length();
+    result.path = points_of<Robot>(path);
     return result;
   }
 
  private:
-  OmplPlanner planner_;
-  OmplMotionTest test_;
-  std::optional<double> budget_s_;
-  PeerProblem problem_;
+  PeerProblem<Robot> problem_;
+  OmplVariant variant_;
+};
+
+class OmplPeer final : public Peer {
+ public:
+  OmplPeer(std::string name, const OmplVariant& variant)
+      : Peer(std::move(name), variant.budget_s.has_value()), variant_(variant) {
+    ompl::msg::noOutputHandler();
+  }
+
+  [[nodiscard]] std::unique_ptr<PeerSolver> prepare(const AnyScene& scene) const override {
+    return make_solver<OmplSolver>(scene, variant_);
+  }
+
+ private:
+  OmplVariant variant_;
 };
 
 }  // namespace
@@ -151,12 +171,12 @@ std::string ompl_version() {
 }
 
 std::unique_ptr<Peer> make_ompl_peer(std::string name, OmplPlanner planner, OmplMotionTest test) {
-  return std::make_unique<OmplPeer>(std::move(name), planner, test, std::nullopt);
+  return std::make_unique<OmplPeer>(std::move(name), OmplVariant{planner, test, std::nullopt});
 }
 
 std::unique_ptr<Peer> make_ompl_rrt_star_for(std::string name, double budget_s) {
-  return std::make_unique<OmplPeer>(std::move(name), OmplPlanner::kRrtStar,
-                                    OmplMotionTest::kDiscrete, budget_s);
+  return std::make_unique<OmplPeer>(
+      std::move(name), OmplVariant{OmplPlanner::kRrtStar, OmplMotionTest::kDiscrete, budget_s});
 }
 
 }  // namespace sopt

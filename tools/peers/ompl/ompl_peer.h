@@ -1,8 +1,8 @@
-// Planners of the Open Motion Planning Library as peers: its defaults, this project's World2 behind
-// its checkers. Space: the box in which a configuration can be clear. Motions are checked either as
-// OMPL does by default, at states no further apart than kResolution_m, or by World2's exact segment
-// test, which needs no resolution. Planner, space and problem are new for every run and seeded
-// before, so a run depends on its seed alone, unless the clock ends it.
+// Planners of the Open Motion Planning Library as peers: its defaults, this project's robots and
+// worlds behind its checkers. Space: the box in which a configuration can be clear. Motions are
+// checked either as OMPL does by default, at states no further apart than kResolution, or by the
+// robot's own motion test, which needs no resolution. Planner, space and problem are new for every
+// run and seeded before, so a run depends on its seed alone, unless the clock ends it.
 #pragma once
 
 #include <memory>
@@ -22,7 +22,7 @@ enum class OmplPlanner {
 
 enum class OmplMotionTest { kDiscrete, kExact };
 
-inline constexpr double kResolution_m = 0.05;
+inline constexpr double kResolution = 0.05;  // m in the plane, rad of an arm
 
 [[nodiscard]] std::string ompl_version();
 

@@ -1,48 +1,45 @@
-// World2 as OMPL asks for it: clearance of a state, and of a straight motion, exact.
+// A robot among obstacles as OMPL asks for it: whether a configuration is clear, exactly, and
+// whether a straight motion is, as this project's sampler finds out.
 #pragma once
 
 #include <ompl/base/MotionValidator.h>
 #include <ompl/base/SpaceInformation.h>
 #include <ompl/base/StateValidityChecker.h>
-#include <ompl/base/spaces/RealVectorStateSpace.h>
 
 #include <utility>
 
+#include "tools/peers/ompl/robot_space.h"
 #include "tools/peers/peer.h"
 
 namespace sopt {
 
-[[nodiscard]] inline Vec2 point_of(const ompl::base::State* state) {
-  const double* const values = state->as<ompl::base::RealVectorStateSpace::StateType>()->values;
-  return {values[0], values[1]};
-}
-
-[[nodiscard]] inline bool keeps_margin(const PeerProblem& problem, const Vec2& a, const Vec2& b) {
-  return problem.scene->robot.motion_is_clear(*problem.scene->world, problem.rule, a, b);
-}
-
+template <class Robot>
 class WorldStateChecker final : public ompl::base::StateValidityChecker {
  public:
-  WorldStateChecker(const ompl::base::SpaceInformationPtr& space, const PeerProblem& problem)
+  WorldStateChecker(const ompl::base::SpaceInformationPtr& space, const PeerProblem<Robot>& problem)
       : StateValidityChecker(space), problem_(&problem) {}
 
   [[nodiscard]] bool isValid(const ompl::base::State* state) const override {
-    const Vec2 point = point_of(state);
-    return keeps_margin(*problem_, point, point);
+    return is_clear(robot_of(*problem_->scene), *problem_->scene->world, config_of<Robot>(state),
+                    problem_->rule);
   }
 
  private:
-  const PeerProblem* problem_;
+  const PeerProblem<Robot>* problem_;
 };
 
+template <class Robot>
 class WorldMotionChecker final : public ompl::base::MotionValidator {
  public:
-  WorldMotionChecker(const ompl::base::SpaceInformationPtr& space, const PeerProblem& problem)
+  WorldMotionChecker(const ompl::base::SpaceInformationPtr& space,
+                     const PeerProblem<Robot>& problem)
       : MotionValidator(space), problem_(&problem) {}
 
   [[nodiscard]] bool checkMotion(const ompl::base::State* a,
                                  const ompl::base::State* b) const override {
-    return keeps_margin(*problem_, point_of(a), point_of(b));
+    return robot_of(*problem_->scene)
+        .motion_is_clear(*problem_->scene->world, problem_->rule, config_of<Robot>(a),
+                         config_of<Robot>(b));
   }
 
   // Only planners that go as far as they can call this one; none here does.
@@ -55,7 +52,7 @@ class WorldMotionChecker final : public ompl::base::MotionValidator {
   }
 
  private:
-  const PeerProblem* problem_;
+  const PeerProblem<Robot>* problem_;
 };
 
 }  // namespace sopt
