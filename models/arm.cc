@@ -117,7 +117,9 @@ ArmStatus Arm<N>::rebuild() noexcept {
   if (num_bodies_ > kMaxBodies) return ArmStatus::kTooManyBodies;
   resolve_pairs();
   bound_links();
-  cover_.build({capsules_.data(), at(num_capsules_)});
+  const std::span<const Capsule3> capsules(capsules_.data(), at(num_capsules_));
+  cover_.build(capsules);
+  capsule_spheres_.build(capsules, {bodies_.data(), at(num_bodies_)});
   for (int l = 0; l <= N; ++l) link_cover_[at(l)] = to_cover(spheres_[at(l)]);
   for (int b = 0; b < num_bodies_; ++b) body_cover_[at(b)] = to_cover(bodies_[at(b)].sphere);
   return ArmStatus::kOk;
@@ -227,6 +229,19 @@ double Arm<N>::reach_of(int i_joint, int i_link, const Vec3& point) const noexce
     p = Vec3(p.x(), c * p.y() - s * p.z(), s * p.y() + c * p.z()) + kinematics_.position[at(j)];
   }
   return reach.from_axis() * kRounding;
+}
+
+template <int N>
+ConfigBox<N> Arm<N>::sampling_box(const World& /*world*/,
+                                  const ClearanceRule& /*rule*/) const SOPT_RT {
+  constexpr double kPi = 3.14159265358979323846;
+  ConfigBox<N> box{lower_, upper_};
+  for (int j = 0; j < N; ++j) {
+    if (!is_continuous(j)) continue;
+    box.lower[j] = -kPi;
+    box.upper[j] = kPi;
+  }
+  return box;
 }
 
 template class Arm<4>;

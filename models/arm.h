@@ -15,7 +15,9 @@
 
 #include "models/arm_cover.h"
 #include "models/arm_description.h"
+#include "models/arm_spheres.h"
 #include "models/capacity.h"
+#include "models/config.h"
 #include "models/margin.h"
 #include "models/shape3.h"
 #include "rt/annotations.h"
@@ -152,8 +154,11 @@ class Arm {
   }
 
   // --- what planning asks
-  // Nominal length of a trajectory step when the request gives no speed: 0.05 s at 1 rad/s.
-  [[nodiscard]] double default_step_length(const World& /*world*/) const SOPT_RT { return 0.05; }
+  // Nominal length of a trajectory step when the request gives no speed: that of the defaults.
+  [[nodiscard]] double default_step_length(const World& /*world*/) const SOPT_RT {
+    constexpr PlanOptions kDefaults = PlanOptions::arm();
+    return kDefaults.speed_mps * kDefaults.dt_s;
+  }
   // The position limits; one turn of a continuous joint, from -pi.
   [[nodiscard]] ConfigBox<N> sampling_box(const World& world,
                                           const ClearanceRule& rule) const SOPT_RT;
@@ -208,16 +213,19 @@ class Arm {
   [[nodiscard]] std::span<const CoverSphere> cover(int i_capsule) const SOPT_RT {
     return cover_.of(i_capsule);
   }
-  // As link_sphere_J and body(i_body).sphere.
-  [[nodiscard]] const CoverCapsule& capsule_lanes(int i_capsule) const SOPT_RT {
+  // capsule_J in floats.
+  [[nodiscard]] const CoverCapsule& cover_capsule(int i_capsule) const SOPT_RT {
     return cover_.capsule(i_capsule);
   }
+  // As link_sphere_J and body(i_body).sphere.
   [[nodiscard]] const CoverSphere& link_cover(int i_link) const SOPT_RT {
     return link_cover_[at(i_link)];
   }
   [[nodiscard]] const CoverSphere& body_cover(int i_body) const SOPT_RT {
     return body_cover_[at(i_body)];
   }
+  // Bounding spheres of capsules, in batches.
+  [[nodiscard]] const ArmSpheres& capsule_spheres() const SOPT_RT { return capsule_spheres_; }
 
  private:
   [[nodiscard]] static constexpr std::size_t at(int i) noexcept {
@@ -259,6 +267,7 @@ class Arm {
   std::array<Config, N + 1> reach_{};                     // [i_link][i_joint]
   std::array<Config, kMaxLinkCapsules> capsule_reach_{};  // [i_capsule][i_joint]
   ArmCover cover_;
+  ArmSpheres capsule_spheres_;
   std::array<CoverSphere, N + 1> link_cover_{};
   std::array<CoverSphere, kMaxBodies> body_cover_{};
 };

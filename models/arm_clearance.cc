@@ -53,18 +53,6 @@ template <int N>
   return is_within(obstacle, arm.capsule_W(pose, i_capsule), radius_m);
 }
 
-template <int N>
-[[nodiscard]] bool is_near_pair(const Arm<N>& arm, const ArmPose<N>& pose, const ArmBody& a,
-                                const ArmBody& b, double radius_m) noexcept {
-  for (int i = a.first; i < a.last; ++i) {
-    const Convex3 one = to_convex(arm.capsule_W(pose, i));
-    for (int k = b.first; k < b.last; ++k) {
-      if (is_within(one, arm.capsule_W(pose, k), radius_m)) return true;
-    }
-  }
-  return false;
-}
-
 }  // namespace
 
 bool may_be_within(const Convex3& obstacle, const Sphere3& sphere, double radius_m) SOPT_RT {
@@ -74,6 +62,29 @@ bool may_be_within(const Convex3& obstacle, const Sphere3& sphere, double radius
   const double limit_m =
       (sphere.radius_m + obstacle.radius_m + radius_m) * (1.0 + 1e-12) + 8.0 * rounding_m;
   return limit_m >= 0.0 && !(core_distance2(obstacle, offset) > limit_m * limit_m);
+}
+
+template <int N>
+bool link_is_within(const Arm<N>& arm, const ArmPose<N>& pose, int i_link, const Convex3& obstacle,
+                    double radius_m) SOPT_RT {
+  for (int i = arm.first_capsule(i_link); i < arm.first_capsule(i_link + 1); ++i) {
+    if (is_near(arm, pose, i, obstacle, radius_m)) return true;
+  }
+  return false;
+}
+
+template <int N>
+bool bodies_are_within(const Arm<N>& arm, const ArmPose<N>& pose, int i_body_a, int i_body_b,
+                       double radius_m) SOPT_RT {
+  const ArmBody& a = arm.body(i_body_a);
+  const ArmBody& b = arm.body(i_body_b);
+  for (int i = a.first; i < a.last; ++i) {
+    const Convex3 one = to_convex(arm.capsule_W(pose, i));
+    for (int k = b.first; k < b.last; ++k) {
+      if (is_within(one, arm.capsule_W(pose, k), radius_m)) return true;
+    }
+  }
+  return false;
 }
 
 template <int N>
@@ -93,17 +104,14 @@ ArmContact nearest_obstacle(const Arm<N>& arm, const World3& world, const ArmPos
   nearest.clearance.distance_m = limit_m;
   // Not for_each_contact: here the limit shrinks on the way.
   for (int l = 0; l <= N; ++l) {
-    const int first = arm.first_capsule(l);
-    const int last = arm.first_capsule(l + 1);
-    if (first == last) continue;
+    if (arm.first_capsule(l) == arm.first_capsule(l + 1)) continue;
     const Sphere3 sphere = arm.link_sphere_W(pose, l);
     const double reach_m = std::max(nearest.clearance.distance_m, 0.0);
-    (void)world.for_each_near(arm_clearance_detail::box_around(sphere, reach_m), [&](int i) {
+    (void)world.for_each_near(box_around(sphere, reach_m), [&](int i) {
       const double best_m = nearest.clearance.distance_m;
       Clearance3 c;
       if (may_be_within(world.obstacle(i), sphere, best_m) &&
-          arm_clearance_detail::find_nearest_capsule(arm, pose, first, last, world.obstacle(i),
-                                                     best_m, c) &&
+          arm_clearance_detail::find_nearest_capsule(arm, world, pose, l, i, best_m, c) &&
           c.distance_m < best_m) {
         nearest = {l, i, -1, c};
       }
@@ -137,13 +145,11 @@ bool is_clear(const Arm<N>& arm, const World3& world, const ArmPose<N>& pose,
     const Sphere3 sphere = arm.link_sphere_W(pose, l);
     // A single capsule's box is tighter than its sphere's.
     const Aabb3 area = last == first + 1 ? grown(bounding_box(arm.capsule_W(pose, first)), reach_m)
-                                         : arm_clearance_detail::box_around(sphere, reach_m);
+                                         : box_around(sphere, reach_m);
     const bool is_free = world.for_each_near(area, [&](int i) {
       const double required_m = world.required_m(i, rule);
-      if (!may_be_within(world.obstacle(i), sphere, required_m)) return true;
-      int k = first;
-      while (k < last && !is_near(arm, pose, k, world.obstacle(i), required_m)) ++k;
-      return k == last;
+      return !may_be_within(world.obstacle(i), sphere, required_m) ||
+             !link_is_within(arm, pose, l, world.obstacle(i), required_m);
     });
     if (!is_free) return false;
   }
@@ -151,8 +157,7 @@ bool is_clear(const Arm<N>& arm, const World3& world, const ArmPose<N>& pose,
     if (arm_clearance_detail::may_be_within(arm.body_sphere_W(pose, pair.i_body_a),
                                             arm.body_sphere_W(pose, pair.i_body_b),
                                             self_clearance_m) &&
-        is_near_pair(arm, pose, arm.body(pair.i_body_a), arm.body(pair.i_body_b),
-                     self_clearance_m)) {
+        bodies_are_within(arm, pose, pair.i_body_a, pair.i_body_b, self_clearance_m)) {
       return false;
     }
   }
@@ -168,6 +173,9 @@ ArmContact Arm<N>::clearance(const World& world, const Config& q, double limit_m
 }
 
 #define SOPT_ARM_CLEARANCE(N)                                                                   \
+  template bool link_is_within(const Arm<N>&, const ArmPose<N>&, int, const Convex3&, double)   \
+      SOPT_RT;                                                                                  \
+  template bool bodies_are_within(const Arm<N>&, const ArmPose<N>&, int, int, double) SOPT_RT;  \
   template Arm<N>::Config contact_gradient(const Arm<N>&, const ArmPose<N>&, const ArmContact&) \
       SOPT_RT;                                                                                  \
   template ArmContact nearest_obstacle(const Arm<N>&, const World3&, const ArmPose<N>&, double) \

@@ -21,10 +21,24 @@ struct ArmContact {
   Clearance3 clearance;          // from the obstacle or other link to i_link
 };
 
+[[nodiscard]] inline Aabb3 box_around(const Sphere3& sphere, double more_m) SOPT_RT {
+  const Vec3 reach = Vec3::Constant(sphere.radius_m + more_m);
+  return {sphere.center - reach, sphere.center + reach};
+}
+
 // False only when the sphere is at least radius_m away from the obstacle, rounding considered. Of a
 // hull a lower bound of the distance is tested, of other shapes the distance itself.
 [[nodiscard]] bool may_be_within(const Convex3& obstacle, const Sphere3& sphere,
                                  double radius_m) SOPT_RT;
+
+// Whether a capsule of link i_link is closer than radius_m to the obstacle. Exact.
+template <int N>
+[[nodiscard]] bool link_is_within(const Arm<N>& arm, const ArmPose<N>& pose, int i_link,
+                                  const Convex3& obstacle, double radius_m) SOPT_RT;
+// Whether capsules of two bodies are closer than radius_m to each other. Exact.
+template <int N>
+[[nodiscard]] bool bodies_are_within(const Arm<N>& arm, const ArmPose<N>& pose, int i_body_a,
+                                     int i_body_b, double radius_m) SOPT_RT;
 
 // The nearest capsule of every link to every obstacle that is at most `radius_m` away, links in
 // order, obstacles in the broad phase's order. visit(const ArmContact&) -> bool; false stops.
@@ -69,50 +83,78 @@ template <int N>
 
 namespace arm_clearance_detail {
 
-[[nodiscard]] inline Aabb3 box_around(const Sphere3& sphere, double more_m) SOPT_RT {
-  const Vec3 reach = Vec3::Constant(sphere.radius_m + more_m);
-  return {sphere.center - reach, sphere.center + reach};
-}
-
 [[nodiscard]] inline bool may_be_within(const Sphere3& a, const Sphere3& b,
                                         double radius_m) SOPT_RT {
   const double limit_m = (a.radius_m + b.radius_m + radius_m) * (1.0 + 1e-12);
   return limit_m >= 0.0 && !((a.center - b.center).squaredNorm() > limit_m * limit_m);
 }
 
-[[nodiscard]] inline Sphere3 sphere_around(const Capsule3& capsule) SOPT_RT {
-  return {0.5 * (capsule.p0 + capsule.p1),
-          (0.5 * (capsule.p1 - capsule.p0).norm() + capsule.radius_m) * (1.0 + 1e-12)};
+// Calls look(lane) for lanes whose bound is at most limit_m, the lowest bound first; `look` may
+// lower limit_m.
+template <class Look>
+[[gnu::always_inline]] inline void look_at_nearest(const V8f& bound_m, const double& limit_m,
+                                                   Look&& look) {
+  unsigned open = ~lane_mask8(bound_m > float_above(limit_m)) & kAllLanes;
+  while (open != 0) {
+    int nearest = __builtin_ctz(open);
+    for (unsigned rest = open & (open - 1); rest != 0; rest &= rest - 1) {
+      const int lane = __builtin_ctz(rest);
+      if (bound_m[lane] < bound_m[nearest]) nearest = lane;
+    }
+    if (static_cast<double>(bound_m[nearest]) > limit_m) return;
+    look(nearest);
+    open &= ~(1U << nearest);
+  }
 }
 
-// The nearest of capsules [first, last) of the arm to an obstacle, as far as limit_m. Of several,
-// those whose spheres are farther are not looked at: may_reach(sphere, limit_m) is false for them.
-template <int N, class MayReach>
-[[nodiscard]] bool find_nearest_capsule(const Arm<N>& arm, const ArmPose<N>& pose, int first,
-                                        int last, const Convex3& obstacle, double limit_m,
-                                        Clearance3& out, MayReach&& may_reach) SOPT_RT {
+// The nearest capsule of link i_link to obstacle i_obstacle, as far as limit_m.
+template <int N>
+[[nodiscard]] bool find_nearest_capsule(const Arm<N>& arm, const World3& world,
+                                        const ArmPose<N>& pose, int i_link, int i_obstacle,
+                                        double limit_m, Clearance3& out) SOPT_RT {
+  const Convex3& obstacle = world.obstacle(i_obstacle);
+  const int first = arm.first_capsule(i_link);
+  if (arm.first_capsule(i_link + 1) == first + 1) {
+    return compute_clearance_within(obstacle, arm.capsule_W(pose, first), limit_m, out);
+  }
   bool found = false;
-  for (int i = first; i < last; ++i) {
-    const Capsule3 capsule = arm.capsule_W(pose, i);
-    if (last - first > 1 && !may_reach(sphere_around(capsule), limit_m)) continue;
-    Clearance3 c;
-    if (!compute_clearance_within(obstacle, capsule, limit_m, c)) continue;
-    if (found && c.distance_m >= out.distance_m) continue;
-    out = c;
-    limit_m = c.distance_m;
-    found = true;
+  for (const SphereBatch& batch : arm.capsule_spheres().of_link(i_link)) {
+    const PaddedLanes spheres = to_world(pose.X_WJ[static_cast<std::size_t>(i_link)], batch);
+    look_at_nearest(world.distance_bounds(i_obstacle, spheres), limit_m, [&](int lane) {
+      const Capsule3 capsule = arm.capsule_W(pose, batch.first + lane);
+      if (!compute_clearance_within(obstacle, capsule, limit_m, out)) return;
+      found = true;
+      limit_m = out.distance_m;
+    });
   }
   return found;
 }
 
-// Of an obstacle of the world.
+// The nearest capsules of two bodies, as far as limit_m.
 template <int N>
-[[nodiscard]] bool find_nearest_capsule(const Arm<N>& arm, const ArmPose<N>& pose, int first,
-                                        int last, const Convex3& obstacle, double limit_m,
-                                        Clearance3& out) SOPT_RT {
-  return find_nearest_capsule(
-      arm, pose, first, last, obstacle, limit_m, out,
-      [&](const Sphere3& s, double reach_m) { return may_be_within(obstacle, s, reach_m); });
+[[nodiscard]] bool find_nearest_capsules(const Arm<N>& arm, const ArmPose<N>& pose, int i_body_a,
+                                         int i_body_b, double limit_m, Clearance3& out) SOPT_RT {
+  const auto frame = [&](int i_body) -> const Pose3& {
+    return pose.X_WJ[static_cast<std::size_t>(arm.body(i_body).i_link)];
+  };
+  bool found = false;
+  for (const SphereBatch& batch_b : arm.capsule_spheres().of_body(i_body_b)) {
+    const PaddedLanes b = to_world(frame(i_body_b), batch_b);
+    for (const SphereBatch& batch_a : arm.capsule_spheres().of_body(i_body_a)) {
+      const PaddedLanes a = to_world(frame(i_body_a), batch_a);
+      for (int i = 0; i < batch_a.num; ++i) {
+        const V8f bound_m = distance_bounds(b, a, i);
+        look_at_nearest(bound_m, limit_m, [&](int lane) {
+          const Convex3 one = to_convex(arm.capsule_W(pose, batch_a.first + i));
+          const Capsule3 other = arm.capsule_W(pose, batch_b.first + lane);
+          if (!compute_clearance_within(one, other, limit_m, out)) return;
+          found = true;
+          limit_m = out.distance_m;
+        });
+      }
+    }
+  }
+  return found;
 }
 
 }  // namespace arm_clearance_detail
@@ -130,17 +172,14 @@ bool for_each_contact(const Arm<N>& arm, const World3& world, const ArmPose<N>& 
                       const LinkRadii<N>& radii_m, Visit&& visit) {
   namespace detail = arm_clearance_detail;
   for (int l = 0; l <= N; ++l) {
-    const int first = arm.first_capsule(l);
-    const int last = arm.first_capsule(l + 1);
-    if (first == last) continue;
+    if (arm.first_capsule(l) == arm.first_capsule(l + 1)) continue;
     const double radius_m = radii_m[static_cast<std::size_t>(l)];
     const Sphere3 sphere = arm.link_sphere_W(pose, l);
-    const bool went_on = world.for_each_near(detail::box_around(sphere, radius_m), [&](int i) {
+    const bool went_on = world.for_each_near(box_around(sphere, radius_m), [&](int i) {
       const Convex3& obstacle = world.obstacle(i);
       if (!may_be_within(obstacle, sphere, radius_m)) return true;
       ArmContact contact{l, i, -1, {}};
-      return !detail::find_nearest_capsule(arm, pose, first, last, obstacle, radius_m,
-                                           contact.clearance) ||
+      return !detail::find_nearest_capsule(arm, world, pose, l, i, radius_m, contact.clearance) ||
              visit(static_cast<const ArmContact&>(contact));
     });
     if (!went_on) return false;
@@ -153,29 +192,17 @@ bool for_each_self_contact(const Arm<N>& arm, const ArmPose<N>& pose, double rad
                            Visit&& visit) {
   namespace detail = arm_clearance_detail;
   for (const auto& pair : arm.self_collision_pairs()) {
-    const ArmBody& a = arm.body(pair.i_body_a);
-    const ArmBody& b = arm.body(pair.i_body_b);
-    const Sphere3 around_b = arm.body_sphere_W(pose, pair.i_body_b);
-    if (!detail::may_be_within(arm.body_sphere_W(pose, pair.i_body_a), around_b, radius_m)) {
+    if (!detail::may_be_within(arm.body_sphere_W(pose, pair.i_body_a),
+                               arm.body_sphere_W(pose, pair.i_body_b), radius_m)) {
       continue;
     }
-    ArmContact contact{b.i_link, kSelfObstacle, a.i_link, {}};
-    double limit_m = radius_m;
-    bool found = false;
-    for (int i = a.first; i < a.last; ++i) {
-      const Capsule3 capsule = arm.capsule_W(pose, i);
-      const Sphere3 around_a = detail::sphere_around(capsule);
-      if (!detail::may_be_within(around_a, around_b, limit_m)) continue;
-      const auto may_reach = [&](const Sphere3& s, double reach_m) {
-        return detail::may_be_within(around_a, s, reach_m);
-      };
-      if (detail::find_nearest_capsule(arm, pose, b.first, b.last, to_convex(capsule), limit_m,
-                                       contact.clearance, may_reach)) {
-        found = true;
-        limit_m = contact.clearance.distance_m;
-      }
+    ArmContact contact{
+        arm.body(pair.i_body_b).i_link, kSelfObstacle, arm.body(pair.i_body_a).i_link, {}};
+    if (detail::find_nearest_capsules(arm, pose, pair.i_body_a, pair.i_body_b, radius_m,
+                                      contact.clearance) &&
+        !visit(static_cast<const ArmContact&>(contact))) {
+      return false;
     }
-    if (found && !visit(static_cast<const ArmContact&>(contact))) return false;
   }
   return true;
 }

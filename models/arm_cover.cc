@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "models/simd.h"
 
 namespace sopt {
 namespace {
@@ -29,10 +30,6 @@ double least_excess(int num, double r, double length_m) noexcept {
   return enough_m;
 }
 
-float float_above(double value) noexcept {
-  return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
-}
-
 CoverCapsule to_floats(const Capsule3& c) noexcept {
   CoverCapsule cover;
   const Vec3 axis = c.p1 - c.p0;
@@ -57,7 +54,7 @@ CoverSphere to_cover(const Sphere3& sphere) noexcept {
   }
   const double radius_m = (sphere.radius_m + moved_m) * (1.0 + 1e-12);
   cover.radius_m = float_above(radius_m);
-  cover.inner_m = -float_above(-(sphere.radius_m - moved_m) * (1.0 - 1e-12));
+  cover.inner_m = float_below((sphere.radius_m - moved_m) * (1.0 - 1e-12));
   return cover;
 }
 

@@ -11,20 +11,15 @@ namespace {
 
 // Of the clearance asked for above the floor, what a link may travel to the ends of a piece.
 constexpr double kRoomShare = 0.5;
-// The least room that is used, whatever is asked for.
-constexpr double kLeastRoom_m = 2e-5;
 constexpr int kMaxTurns = 1 << 14;
 constexpr double kLeastHalf = 0x1p-24;
-constexpr int kStack =
-    256;  // 8 pieces at first, one more for each that is halved, 21 times at most
+// 8 pieces at first, one more for each that is halved, 21 times at most.
+constexpr int kStack = 256;
 
+constexpr int kObstaclesAtOnce = 16;
 constexpr int kSpheresAtOnce = 16;
 
 constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-
-// Of what is not negative.
-float rounded_up(double value) noexcept { return static_cast<float>(value * (1.0 + 0x1p-23)); }
-float rounded_down(double value) noexcept { return static_cast<float>(value * (1.0 - 0x1p-23)); }
 
 template <int N>
 class MotionCheck {
@@ -40,27 +35,21 @@ class MotionCheck {
         travel_(arm.difference(a, b)),
         abs_travel_(travel_.cwiseAbs()) {
     self_m_ = std::max(self_clearance_m, kSelfClearance_m);
-    rule_.floor_m = rule.floor_m + kLeastRoom_m;
+    rule_.floor_m = rule.floor_m + kMotionRoom_m;
     rule_.cap_m = std::max(rule.cap_m, rule_.floor_m);
-    room_m_ = rounded_down(
-        std::max(kLeastRoom_m, kRoomShare * (world.min_required_m(rule_) - rule.floor_m)));
-    self_room_m_ = rounded_down(self_m_);
+    room_m_ = float_below(
+        std::max(kMotionRoom_m, kRoomShare * (world.min_required_m(rule_) - rule.floor_m)));
+    self_room_m_ = float_below(self_m_);
     double reach_m = 0.0;
     double slides_m = 0.0;
     for (int l = 1; l <= N; ++l) {
-      travel_m_[at(l)] = rounded_up(arm.displacement_bound(l, abs_travel_));
+      travel_m_[at(l)] = float_above(arm.displacement_bound(l, abs_travel_));
       const Sphere3& sphere = arm.link_sphere_J(l);
       reach_m = std::max(reach_m, sphere.center.template lpNorm<1>() + 2.0 * sphere.radius_m);
       slides_m += arm.kinematics().slides[l - 1] * (std::abs(a[l - 1]) + abs_travel_[l - 1]);
     }
-    pad_m_ = rounded_up(lane_pad_m(arm, reach_m, slides_m));
-    self_reach_m_ = rounded_up(self_m_) + 4.0F * pad_m_;
-    const auto pairs = arm.self_collision_pairs();
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const int i_link = arm.body(pairs[i].i_body_b).i_link;
-      const int i_base = arm.body(pairs[i].i_body_a).i_link;
-      pair_travel_m_[i] = rounded_up(arm.displacement_bound(i_link, abs_travel_, i_base));
-    }
+    pad_m_ = float_above(lane_pad_m(arm, reach_m, slides_m));
+    self_reach_m_ = float_above(self_m_) + 4.0F * pad_m_;
   }
 
   [[nodiscard]] bool is_clear() noexcept {
@@ -77,10 +66,10 @@ class MotionCheck {
     double middle;
     double half;
   };
-  // Distances the lanes test for: `wide` for pieces to be done, `core` at their middles.
+  // How far links get from where they are in the middle of a piece.
   struct Spread {
-    V8f extra_m;       // 0 where the piece need not be halved
-    unsigned divides;  // lanes where it is not
+    V8f extra_m;       // 0 where that is within the room
+    unsigned divides;  // lanes where it is not: halved if something is that near
   };
 
   void push(double middle, double half) noexcept { stack_[at(size_++)] = {middle, half}; }
@@ -96,17 +85,13 @@ class MotionCheck {
     if (arm_.first_capsule(0) == arm_.first_capsule(1)) return true;
     ArmPose<N> pose;
     pose.X_WJ[0] = arm_.kinematics().X_WB;
-    const Aabb3 area =
-        arm_clearance_detail::box_around(arm_.link_sphere_W(pose, 0), world_.max_required_m(rule_));
+    const Aabb3 area = box_around(arm_.link_sphere_W(pose, 0), world_.max_required_m(rule_));
     return world_.for_each_near(area, [&](int i) { return !is_near(pose, 0, i); });
   }
 
   [[nodiscard]] bool is_near(const ArmPose<N>& pose, int i_link, int i_obstacle) const noexcept {
-    const double required_m = world_.required_m(i_obstacle, rule_);
-    for (int k = arm_.first_capsule(i_link); k < arm_.first_capsule(i_link + 1); ++k) {
-      if (is_within(world_.obstacle(i_obstacle), arm_.capsule_W(pose, k), required_m)) return true;
-    }
-    return false;
+    return link_is_within(arm_, pose, i_link, world_.obstacle(i_obstacle),
+                          world_.required_m(i_obstacle, rule_));
   }
 
   // False when a middle is not clear.
@@ -173,32 +158,44 @@ class MotionCheck {
     const CoverSphere& cover = arm_.link_cover(l);
     const LaneVec3 c = center_W(l, cover);
     const PaddedLanes sphere({c.x, c.y, c.z, (cover.radius_m + pad_m_) + spread.extra_m});
-    return world_.for_each_near(sphere, live_, rule_, [&](int i, unsigned lanes) {
-      return obstacle_is_clear(l, i, lanes);
+    std::array<NearObstacle, kObstaclesAtOnce> near;
+    std::size_t num = 0;
+    const bool is_clear = world_.for_each_near(sphere, live_, rule_, [&](int i, unsigned lanes) {
+      near[num++] = {i, lanes, 0};
+      if (num < near.size()) return true;
+      num = 0;
+      return capsules_are_clear(l, near);
     });
+    return is_clear && capsules_are_clear(l, std::span(near).first(num));
   }
 
-  // Covering spheres of a link against one obstacle.
-  [[nodiscard]] bool obstacle_is_clear(int l, int i_obstacle, unsigned lanes) noexcept {
-    unsigned near = 0;
-    unsigned touching = 0;
+  // Covering spheres of a link's capsules against obstacles that are near the link.
+  struct NearObstacle {
+    int i_obstacle;
+    unsigned lanes;
+    unsigned touching;  // of these, lanes that need the exact answer
+  };
+  [[nodiscard]] bool capsules_are_clear(int l, std::span<NearObstacle> obstacles) noexcept {
+    if (obstacles.empty()) return true;
     for (int k = arm_.first_capsule(l); k < arm_.first_capsule(l + 1); ++k) {
       const Spread own =
-          spread_of(rounded_up(arm_.capsule_displacement_bound(k, abs_travel_)), room_m_);
+          spread_of(float_above(arm_.capsule_displacement_bound(k, abs_travel_)), room_m_);
       for (const CoverSphere& s : arm_.cover(k)) {
         const LaneVec3 c = center_W(l, s);
-        const float radius_m = s.radius_m + pad_m_;
-        const NestedNear found = world_.lanes_near(
-            i_obstacle, {c.x, c.y, c.z, radius_m + own.extra_m, radius_m, s.inner_m - pad_m_},
-            rule_);
-        if ((found.inner & lanes) != 0) return false;
-        near |= found.wide & own.divides;
-        touching |= found.sphere;
+        const NestedLanes lanes(c.x, c.y, c.z, s.radius_m + pad_m_, own.extra_m,
+                                s.inner_m - pad_m_);
+        for (NearObstacle& o : obstacles) {
+          const NestedNear found = world_.lanes_near(o.i_obstacle, lanes, rule_);
+          if ((found.inner & o.lanes) != 0) return false;
+          open_ |= found.wide & own.divides & o.lanes;
+          o.touching |= found.sphere & o.lanes;
+        }
       }
     }
-    open_ |= near & lanes;
-    for (touching &= lanes; touching != 0; touching &= touching - 1) {
-      if (is_near(pose_of(__builtin_ctz(touching)), l, i_obstacle)) return false;
+    for (const NearObstacle& o : obstacles) {
+      for (unsigned lanes = o.touching; lanes != 0; lanes &= lanes - 1) {
+        if (is_near(pose_of(__builtin_ctz(lanes)), l, o.i_obstacle)) return false;
+      }
     }
     return true;
   }
@@ -212,7 +209,8 @@ class MotionCheck {
     const auto& pair = arm_.self_collision_pairs()[at(i_pair)];
     const ArmBody& a = arm_.body(pair.i_body_a);
     const ArmBody& b = arm_.body(pair.i_body_b);
-    const Spread spread = spread_of(pair_travel_m_[at(i_pair)], self_room_m_);
+    const Spread spread = spread_of(
+        float_above(arm_.displacement_bound(b.i_link, abs_travel_, a.i_link)), self_room_m_);
     const CoverSphere& sphere_a = arm_.body_cover(pair.i_body_a);
     const CoverSphere& sphere_b = arm_.body_cover(pair.i_body_b);
     const LaneVec3 middle_b = center_W(b.i_link, sphere_b);
@@ -235,7 +233,8 @@ class MotionCheck {
     look_at_capsules(a, b, look);
     open_ |= look.near;
     for (unsigned touching = look.touching; touching != 0; touching &= touching - 1) {
-      if (pair_is_near(pose_of(__builtin_ctz(touching)), a, b)) return false;
+      const ArmPose<N>& pose = pose_of(__builtin_ctz(touching));
+      if (bodies_are_within(arm_, pose, pair.i_body_a, pair.i_body_b, self_m_)) return false;
     }
     return true;
   }
@@ -255,9 +254,9 @@ class MotionCheck {
   };
   void look_at_capsules(const ArmBody& a, const ArmBody& b, PairLook& look) const noexcept {
     for (int k = look.num > 0 ? b.first : b.last; k < b.last; ++k) {
-      const CoverCapsule& c = arm_.capsule_lanes(k);
+      const CoverCapsule& c = arm_.cover_capsule(k);
       const Spread spread = spread_of(
-          rounded_up(arm_.capsule_displacement_bound(k, abs_travel_, a.i_link)), self_room_m_);
+          float_above(arm_.capsule_displacement_bound(k, abs_travel_, a.i_link)), self_room_m_);
       for (int i = 0; i < look.num; ++i) {
         const auto& [middle, radius_m, lanes] = look.spheres[at(i)];
         LaneVec3 apart{middle.x - c.p0[0], middle.y - c.p0[1], middle.z - c.p0[2]};
@@ -283,17 +282,6 @@ class MotionCheck {
     return {dot(X.x, p), dot(X.y, p), dot(X.z, p)};
   }
 
-  [[nodiscard]] bool pair_is_near(const ArmPose<N>& pose, const ArmBody& a,
-                                  const ArmBody& b) const noexcept {
-    for (int i = a.first; i < a.last; ++i) {
-      const Convex3 one = to_convex(arm_.capsule_W(pose, i));
-      for (int k = b.first; k < b.last; ++k) {
-        if (is_within(one, arm_.capsule_W(pose, k), self_m_)) return true;
-      }
-    }
-    return false;
-  }
-
   const Arm<N>& arm_;
   const World3& world_;
   ClearanceRule rule_;  // with room above its floor
@@ -305,8 +293,7 @@ class MotionCheck {
   float self_room_m_ = 0.0F;
   float self_reach_m_ = 0.0F;  // what pairs must keep, with the pads of both and of their distance
   float pad_m_ = 0.0F;
-  std::array<float, N + 1> travel_m_{};             // of links, over the whole motion
-  std::array<float, kMaxBodyPairs> pair_travel_m_;  // of pairs against each other
+  std::array<float, N + 1> travel_m_{};  // of links, over the whole motion
 
   std::array<Piece, kStack> stack_;
   int size_ = 0;
@@ -337,25 +324,11 @@ bool Arm<N>::motion_is_clear(const World& world, const ClearanceRule& rule, cons
   return sopt::motion_is_clear(*this, world, rule, kSelfClearance_m, a, b);
 }
 
-template <int N>
-ConfigBox<N> Arm<N>::sampling_box(const World& /*world*/,
-                                  const ClearanceRule& /*rule*/) const SOPT_RT {
-  constexpr double kPi = 3.14159265358979323846;
-  ConfigBox<N> box{lower_, upper_};
-  for (int j = 0; j < N; ++j) {
-    if (!is_continuous(j)) continue;
-    box.lower[j] = -kPi;
-    box.upper[j] = kPi;
-  }
-  return box;
-}
-
 #define SOPT_ARM_MOTION(N)                                                                  \
   template bool motion_is_clear(const Arm<N>&, const World3&, const ClearanceRule&, double, \
                                 const Arm<N>::Config&, const Arm<N>::Config&) SOPT_RT;      \
   template bool Arm<N>::motion_is_clear(const World&, const ClearanceRule&, const Config&,  \
-                                        const Config&) const SOPT_RT;                       \
-  template ConfigBox<N> Arm<N>::sampling_box(const World&, const ClearanceRule&) const SOPT_RT;
+                                        const Config&) const SOPT_RT;
 SOPT_ARM_MOTION(4)
 SOPT_ARM_MOTION(5)
 SOPT_ARM_MOTION(6)

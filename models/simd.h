@@ -33,6 +33,14 @@ inline constexpr int kLanesFloat = 8;
 [[gnu::always_inline]] inline V4d splat4(double s) noexcept { return V4d{s, s, s, s}; }
 [[gnu::always_inline]] inline V8f splat8(float s) noexcept { return V8f{s, s, s, s, s, s, s, s}; }
 
+// No less and no more than a value, unless that is below the smallest normal float.
+[[gnu::always_inline]] inline float float_above(double value) noexcept {
+  return static_cast<float>(value + 0x1p-23 * (value < 0.0 ? -value : value));
+}
+[[gnu::always_inline]] inline float float_below(double value) noexcept {
+  return -float_above(-value);
+}
+
 // Both rounded to float.
 [[gnu::always_inline]] inline V8f join8(V4d low, V4d high) noexcept {
   using V4f = float __attribute__((vector_size(16)));

@@ -1,20 +1,17 @@
 #include "models/sphere_lanes3.h"
 
-#include <cmath>
 #include <limits>
 
 namespace sopt {
 namespace {
 
-float rounded_up(double value) noexcept {
-  const auto nearest = static_cast<float>(value);
-  return static_cast<double>(nearest) < value
-             ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
-             : nearest;
-}
-
 V8f dot8(const float* axis, const V8f& x, const V8f& y, const V8f& z) noexcept {
   return x * axis[0] + y * axis[1] + z * axis[2];
+}
+
+// Lanes where the distance is not above reach_m, or undefined.
+unsigned lanes_within(const V8f& distance2, const V8f& reach_m) noexcept {
+  return ~lane_mask8(distance2 > reach_m * reach_m) & kAllLanes;
 }
 
 // |v| beyond `limit`, at least 0.
@@ -64,11 +61,11 @@ void ObstacleLanes3::add(const Convex3& shape, const Aabb3& box, double margin_m
     o.half[row] = static_cast<float>(shape.half_m[row]);
     for (int k = 0; k < 3; ++k) o.axis[row][k] = static_cast<float>(shape.axes(k, row));
   }
-  o.own_margin_m = rounded_up(margin_m);
+  o.own_margin_m = float_above(margin_m);
   const double extent_m = shape.center.lpNorm<1>() + (box.upper - box.lower).lpNorm<1>();
   const double pad_m = static_cast<double>(PaddedLanes::kPad) * extent_m;
-  o.radius_m = rounded_up(shape.radius_m + pad_m);
-  o.pad_m = rounded_up(pad_m);
+  o.radius_m = float_above(shape.radius_m + pad_m);
+  o.pad_m = float_above(pad_m);
   o.first_plane = planes_.size();
   if (shape.kind == CoreKind::kHull) {
     const HullData& hull = *shape.hull;
@@ -82,8 +79,11 @@ void ObstacleLanes3::add(const Convex3& shape, const Aabb3& box, double margin_m
   (void)obstacles_.try_push_back(o);
 }
 
-V8f ObstacleLanes3::distance2(const Obstacle& o, const V8f& x, const V8f& y,
-                              const V8f& z) const SOPT_RT {
+V8f ObstacleLanes3::distance2(const Obstacle& o, const V8f& x_W, const V8f& y_W,
+                              const V8f& z_W) const SOPT_RT {
+  const V8f x = x_W - o.center[0];
+  const V8f y = y_W - o.center[1];
+  const V8f z = z_W - o.center[2];
   switch (o.kind) {
     case CoreKind::kPoint:
       return x * x + y * y + z * z;
@@ -110,15 +110,12 @@ V8f ObstacleLanes3::plane_distance(const Obstacle& o, const V8f& x, const V8f& y
   return best;
 }
 
+// The rounding of what is required is covered by the pad, as that is nearly the distance or
+// harmless.
 unsigned ObstacleLanes3::lanes_near_one(const Obstacle& o, const PaddedLanes& lanes,
                                         const ClearanceRule& rule) const SOPT_RT {
-  const V8f x = lanes.spheres.x - o.center[0];
-  const V8f y = lanes.spheres.y - o.center[1];
-  const V8f z = lanes.spheres.z - o.center[2];
-  const double required_m = rule.required_m(static_cast<double>(o.own_margin_m));
-  // The rounding of required_m is covered by the pad, as it is nearly the distance or harmless.
-  const V8f limit = lanes.padded_radius_m + (static_cast<float>(required_m) + o.radius_m);
-  return ~lane_mask8(distance2(o, x, y, z) > limit * limit) & kAllLanes;
+  const SphereLanes& s = lanes.spheres;
+  return lanes_within(distance2(o, s.x, s.y, s.z), lanes.padded_radius_m + o.reach_m(rule));
 }
 
 unsigned ObstacleLanes3::lanes_near(int i_obstacle, const PaddedLanes& lanes,
@@ -129,20 +126,14 @@ unsigned ObstacleLanes3::lanes_near(int i_obstacle, const PaddedLanes& lanes,
 NestedNear ObstacleLanes3::lanes_near(int i_obstacle, const NestedLanes& lanes,
                                       const ClearanceRule& rule) const SOPT_RT {
   const Obstacle& o = obstacles_[i_obstacle];
-  const V8f pad_m = PaddedLanes::kPad * (abs8(lanes.x) + abs8(lanes.y) + abs8(lanes.z));
-  const V8f d2 = distance2(o, lanes.x - o.center[0], lanes.y - o.center[1], lanes.z - o.center[2]);
-  const float required_m =
-      static_cast<float>(rule.required_m(static_cast<double>(o.own_margin_m))) + o.radius_m;
-  const auto may_be_within = [&](const V8f& reach_m) __attribute__((always_inline)) {
-    return ~lane_mask8(d2 > reach_m * reach_m) & kAllLanes;
-  };
-  const V8f within_m = (lanes.inner_m + required_m - 2.0F * o.pad_m) - 2.0F * pad_m;
-  // Of a hull d2 is a lower bound.
-  const unsigned inner = o.kind == CoreKind::kHull
-                             ? 0U
-                             : lane_mask8(within_m > 0.0F) & lane_mask8(d2 < within_m * within_m);
-  return {may_be_within(lanes.wide_m + pad_m + required_m),
-          may_be_within(lanes.radius_m + pad_m + required_m), inner};
+  const V8f d2 = distance2(o, lanes.x, lanes.y, lanes.z);
+  const float reach_m = o.reach_m(rule);
+  NestedNear near{lanes_within(d2, lanes.wide_m + reach_m),
+                  lanes_within(d2, lanes.radius_m + reach_m), 0U};
+  if (o.kind == CoreKind::kHull) return near;  // d2 is a lower bound
+  const V8f sure_m = lanes.inner_m + (reach_m - 2.0F * o.pad_m);
+  near.inner = lane_mask8(sure_m > 0.0F) & lane_mask8(d2 < sure_m * sure_m);
+  return near;
 }
 
 unsigned ObstacleLanes3::lanes_near(const PaddedLanes& lanes,
@@ -150,6 +141,12 @@ unsigned ObstacleLanes3::lanes_near(const PaddedLanes& lanes,
   unsigned near = 0;
   for (const Obstacle& o : obstacles_) near |= lanes_near_one(o, lanes, rule);
   return near;
+}
+
+V8f ObstacleLanes3::distance_bounds(int i_obstacle, const PaddedLanes& lanes) const SOPT_RT {
+  const Obstacle& o = obstacles_[i_obstacle];
+  const SphereLanes& s = lanes.spheres;
+  return sqrt8(distance2(o, s.x, s.y, s.z)) - (lanes.padded_radius_m + o.radius_m);
 }
 
 }  // namespace sopt

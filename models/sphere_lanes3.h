@@ -42,12 +42,30 @@ struct PaddedLanes {
   static constexpr float kPad = 0x1p-18F;
 };
 
-// Spheres around the same middles, told apart in one test.
+// No more than the distances between the spheres and sphere `lane` of `others`.
+[[gnu::always_inline]] inline V8f distance_bounds(const PaddedLanes& spheres,
+                                                  const PaddedLanes& others, int lane) noexcept {
+  const V8f x = spheres.spheres.x - others.spheres.x[lane];
+  const V8f y = spheres.spheres.y - others.spheres.y[lane];
+  const V8f z = spheres.spheres.z - others.spheres.z[lane];
+  return sqrt8(x * x + y * y + z * z) - (spheres.padded_radius_m + others.padded_radius_m[lane]);
+}
+
+// Spheres around the same middles, told apart in one test, with their shares of the pad.
 struct NestedLanes {
-  V8f x, y, z;     // rounded from double
-  V8f wide_m;      // radius, not rounded down
-  float radius_m;  // likewise, at most wide_m
-  float inner_m;   // radius, not rounded up; may be negative
+  V8f x, y, z;   // rounded from double
+  V8f wide_m;    // radius, not rounded down
+  V8f radius_m;  // likewise, at most wide_m
+  V8f inner_m;   // radius, not rounded up; may be negative
+
+  NestedLanes(const V8f& at_x, const V8f& at_y, const V8f& at_z, float radius, const V8f& wider_by,
+              float inner) noexcept
+      : x(at_x), y(at_y), z(at_z) {
+    const V8f pad_m = PaddedLanes::kPad * (abs8(x) + abs8(y) + abs8(z));
+    radius_m = radius + pad_m;
+    wide_m = radius_m + wider_by;
+    inner_m = inner - 2.0F * pad_m;
+  }
 };
 // Lanes where the wide sphere and the sphere may be closer to an obstacle than `rule` asks for, and
 // lanes where the inner one is, for sure.
@@ -74,6 +92,8 @@ class ObstacleLanes3 {
   // Of any obstacle.
   [[nodiscard]] unsigned lanes_near(const PaddedLanes& lanes,
                                     const ClearanceRule& rule) const SOPT_RT;
+  // No more than the distance of sphere i from the obstacle, negative when they may touch.
+  [[nodiscard]] V8f distance_bounds(int i_obstacle, const PaddedLanes& lanes) const SOPT_RT;
 
  private:
   struct Obstacle {
@@ -86,14 +106,20 @@ class ObstacleLanes3 {
     float own_margin_m = 0.0F;  // rounded up; < 0: the rule's
     std::int32_t first_plane = 0;
     std::int32_t num_planes = 0;
+
+    // Between core and middle, for a sphere without radius.
+    [[nodiscard]] float reach_m(const ClearanceRule& rule) const SOPT_RT {
+      return static_cast<float>(rule.required_m(static_cast<double>(own_margin_m))) + radius_m;
+    }
   };
   struct Plane {
     float normal[3];
     float offset;  // relative to the hull's center
   };
 
-  [[nodiscard]] V8f distance2(const Obstacle& obstacle, const V8f& x, const V8f& y,
-                              const V8f& z) const SOPT_RT;
+  // Of points in the world from the core.
+  [[nodiscard]] V8f distance2(const Obstacle& obstacle, const V8f& x_W, const V8f& y_W,
+                              const V8f& z_W) const SOPT_RT;
   [[nodiscard]] V8f plane_distance(const Obstacle& obstacle, const V8f& x, const V8f& y,
                                    const V8f& z) const SOPT_RT;
   [[nodiscard]] unsigned lanes_near_one(const Obstacle& obstacle, const PaddedLanes& lanes,

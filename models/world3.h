@@ -94,6 +94,10 @@ class World3 {
                                       const ClearanceRule& rule) const SOPT_RT {
     return lanes_.lanes_near(i_obstacle, lanes, rule);
   }
+  // No more than the distance of each sphere from the obstacle.
+  [[nodiscard]] V8f distance_bounds(int i_obstacle, const PaddedLanes& lanes) const SOPT_RT {
+    return lanes_.distance_bounds(i_obstacle, lanes);
+  }
 
   // See BroadPhase3::for_each_near; visits obstacle indices.
   template <class Visit>

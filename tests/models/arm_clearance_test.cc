@@ -90,6 +90,29 @@ TEST(ArmClearance, FindsEveryContactWithinTheRadiusAndNoOther) {
   EXPECT_GT(num_found, 50);
 }
 
+// More capsules on a link than are looked at together.
+TEST(ArmClearance, FindsTheNearestOfManyCapsules) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Setting<4> s(seed);
+    auto& capsules = s.drawn.capsules;
+    for (int i = 0; i < 60; ++i) {
+      const Vec3 p0 = oracle::random_vector(s.random, 0.4);
+      const Vec3 p1 = s.random.chance(0.5) ? p0 : oracle::random_vector(s.random, 0.4);
+      capsules.push_back({s.random.index(5), p0, p1, s.random.uniform(0.0, 0.05)});
+    }
+    s.drawn.description.capsules = capsules;
+    ASSERT_EQ(s.drawn.arm.reset(s.drawn.description), ArmStatus::kOk);
+    s.move();
+    EXPECT_TRUE(for_each_contact(s.drawn.arm, s.world.world, s.pose, 2.0, [&](const ArmContact& c) {
+      EXPECT_NEAR(c.clearance.distance_m, link_distance(s, c.i_link, c.i_obstacle), kTol_m);
+      return true;
+    }));
+    const double expected_m = oracle::least_self_distance(s.drawn.arm, s.q);
+    const ArmContact nearest = nearest_link_pair(s.drawn.arm, s.pose, 5.0);
+    EXPECT_NEAR(nearest.clearance.distance_m, expected_m, kTol_m);
+  }
+}
+
 TEST(ArmClearance, StopsWhenTheVisitorSaysSo) {
   Setting<5> s(3);
   int num_visits = 0;

@@ -223,7 +223,8 @@ TEST(ArmMotion, GivesThePlannerItsLimits) {
   const FlatArm flat;
   const FlatArm free(JointKind::kContinuous);
   TestWorld3 test;
-  EXPECT_EQ(flat.arm.default_step_length(test.world), 0.05);
+  EXPECT_EQ(flat.arm.default_step_length(test.world),
+            PlanOptions::arm().speed_mps * PlanOptions::arm().dt_s);
   EXPECT_EQ(flat.arm.sampling_box(test.world, kRule).upper, Config5(Config5::Constant(3.0)));
   EXPECT_EQ(free.arm.sampling_box(test.world, kRule).lower,
             Config5(Config5::Constant(-std::numbers::pi)));

@@ -65,7 +65,22 @@ class SphereLanesTest : public testing::Test {
       num_near_ += is_near ? 1 : 0;
       ++num_all_;
     }
-    for (int i = 0; i < world_.num_obstacles(); ++i) expect_strict_nested(i, s, rule);
+    for (int i = 0; i < world_.num_obstacles(); ++i) {
+      expect_strict_nested(i, s, rule);
+      expect_strict_bounds(i, s, pad_m);
+    }
+  }
+  // Distances are never overrated, and underrated by no more than the pad explains.
+  void expect_strict_bounds(int i_obstacle, const Spheres& s, double pad_m) {
+    const V8f bound_m = world_.distance_bounds(i_obstacle, PaddedLanes(to_lanes(s)));
+    for (int i = 0; i < kLanesFloat; ++i) {
+      const Capsule3 ball{s.center[i], s.center[i], s.radius_m[i]};
+      const double distance_m = compute_clearance(world_.obstacle(i_obstacle), ball).distance_m;
+      const double found_m = static_cast<double>(bound_m[i]);
+      ASSERT_LE(found_m, std::max(distance_m, -s.radius_m[i]));
+      ASSERT_TRUE(distance_m < 0.0 || found_m >= distance_m - pad_m)
+          << found_m << " of " << distance_m;
+    }
   }
   // The wide sphere and the sphere are never clear when they are not, the inner one never near.
   void expect_strict_nested(int i_obstacle, const Spheres& s, const ClearanceRule& rule) {
@@ -73,11 +88,9 @@ class SphereLanesTest : public testing::Test {
     const SphereLanes lanes = to_lanes(s);
     const float radius_m = lanes.radius_m[0];
     const float inner_m = 0.75F * radius_m;
-    const NestedNear near =
-        world_.lanes_near(i_obstacle,
-                          {lanes.x, lanes.y, lanes.z, lanes.radius_m + static_cast<float>(kWider_m),
-                           radius_m, inner_m},
-                          rule);
+    const V8f wider_m = lanes.radius_m - radius_m + static_cast<float>(kWider_m);
+    const NestedNear near = world_.lanes_near(
+        i_obstacle, {lanes.x, lanes.y, lanes.z, radius_m, wider_m, inner_m}, rule);
     for (int i = 0; i < kLanesFloat; ++i) {
       const Capsule3 point{s.center[i], s.center[i], 0.0};
       const double gap_m = compute_clearance(world_.obstacle(i_obstacle), point).distance_m -
