@@ -120,6 +120,7 @@ struct PlanOptions {
     options.dt_s = 0.05;
     options.margin_m = 0.02;
     options.num_batches = 16;  // the first ones give up early, see sampler/tuning.h
+    options.num_streams = 2;   // more cost more than the optimiser gains from them
     options.merge = MergeRule::kEager;
     options.steps_per_window = 160;  // one window is best as long as it fits (docs/segments.md)
     options.tol_step = 4e-3;         // 2 % of cost for a quarter of the time (docs/RESULTS.md)

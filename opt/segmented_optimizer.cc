@@ -17,6 +17,9 @@ namespace {
 // near.
 constexpr double kFirstTrust_steps = 15.0;
 constexpr double kFirstTrust_m = 3.0;
+// A sweep that gains more than this share of the cost has not gained little, whatever tol_step
+// says.
+constexpr double kSmallGain = 0.1;
 // Later sweeps: this many times the largest move of the sweep before, at least one nominal step.
 constexpr double kTrustGrowth = 2.0;
 
@@ -39,6 +42,15 @@ template <int N>
 double next_trust_m(const Arm<N>& /*robot*/, const SweepSummary& /*summary*/, double trust_m,
                     double /*ds_m*/) noexcept {
   return trust_m;
+}
+
+double min_gain_of(const Point2& /*robot*/, double tolerance, double /*cost*/) noexcept {
+  return tolerance;
+}
+
+template <int N>
+double min_gain_of(const Arm<N>& /*robot*/, double tolerance, double cost) noexcept {
+  return std::min(tolerance, kSmallGain * cost);
 }
 
 bool failed(const WindowResult& result) noexcept {
@@ -139,7 +151,8 @@ OptimizerResult<Robot> SegmentedOptimizer<Robot>::optimize(const OptimizerProble
     splits_.list_windows(is_single || k % 2 == 1 ? Parity::kOdd : Parity::kEven, windows_);
     sweep_problem.states = {trajectory.states.begin(), trajectory.states.end()};
     sweep_problem.linearize_about_rest = options.zero_input_start && k == 1;
-    const double min_gain = options.tol_step * trajectory.horizon();
+    const double min_gain =
+        min_gain_of(*problem.robot, options.tol_step * trajectory.horizon(), history_.back().cost);
     const SweepSummary summary = sweep(sweep_problem, deadline, result.counts);
     result.iterations = k;
     // A window that failed is worth another sweep: over its halves.

@@ -4,7 +4,9 @@
 // never rises, and every iterate is as feasible as plan 0 (docs/algorithm.md; between the waypoints
 // of an arm only min_clearance is kept). Stops after max_iterations, when two sweeps in a row
 // (both parities) gain at most tol_step H, or at the deadline; the trajectory is whole at every
-// window. A single window is swept every time, and one such sweep is enough.
+// window. A single window is swept every time, and one such sweep is enough. Deviation: for arms a
+// gain of more than a tenth of f is never little; long motions, whose f is far below H, would stop
+// half-way (docs/RESULTS.md).
 // Merging [Leu22, eq. 3]: neighbours that together gained at most 2 tol_step H / N become one
 // window. Deviation: the printed epsilon is read per step; with epsilon = 1e-3 H as in the paper's
 // stopping rule every window would merge in the first sweep. Windows that failed never merge; a

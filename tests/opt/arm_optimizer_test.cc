@@ -116,6 +116,25 @@ TEST_F(ArmOptimizerTest, HardlyDependsOnTheNumberOfSegments) {
   }
 }
 
+TEST_F(ArmOptimizerTest, GoesOnWhileASweepGainsATenthWhateverTheTolerance) {
+  int num_longer = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    draw(seed);
+    options_.tol_step = 1e3;
+    options_.merge = MergeRule::kPaired;
+    options_.num_segments = 6;
+    const Run run = optimize();
+    ASSERT_GE(run.history.size(), 3U);
+    const auto gain = [&](std::size_t k) {
+      return (run.history[k - 1].cost - run.history[k].cost) / run.history[k - 1].cost;
+    };
+    const std::size_t last = run.history.size() - 1;
+    EXPECT_LE(gain(last), 0.1) << seed;
+    num_longer += last > 2 ? 1 : 0;
+  }
+  EXPECT_GT(num_longer, 0);
+}
+
 TEST_F(ArmOptimizerTest, EndsNearWhatManySweepsReach) {
   double cost = 0.0;
   double best = 0.0;

@@ -72,7 +72,7 @@ void add_sampler_options(CLI::App& command, AlgorithmOptions& options) {
   command.add_option("--samples", options.num_samples, "Samples per stream and batch [20000]")
       ->type_name("N")
       ->check(integer_check(1, 1000000));
-  command.add_option("--streams", options.num_streams, "Independent sampler streams [4]")
+  command.add_option("--streams", options.num_streams, "Independent sampler streams [4, arms 2]")
       ->type_name("K")
       ->check(integer_check(1, kMaxStreams));
   add_words(command, "--sampler", options.sampler, samplers(),
