@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "models/arm_clearance.h"
 #include "opt/margin_ladder.h"
 #include "opt/reference.h"
 #include "opt/request_rules.h"
@@ -43,52 +42,6 @@ bool fail(PlanResult<Robot>& result, PlanStatus status, PlanStage stage, const c
   result.failure.i_obstacle = i_obstacle;
   result.failure.amount = amount;
   return false;
-}
-
-// What is wrong with an end of the request; no reason when nothing is.
-PlanFailure find_bad_end(const Point2& robot, const World2& world, const Vec2& end, bool is_start,
-                         double min_clearance_m) noexcept {
-  PlanFailure failure;
-  failure.reason = nullptr;
-  const NearestObstacle nearest = robot.clearance(world, end, min_clearance_m);
-  if (nearest.distance_m >= min_clearance_m) return failure;
-  failure.reason =
-      is_start ? "start is closer than min_clearance" : "goal is closer than min_clearance";
-  failure.i_obstacle = nearest.i_obstacle;
-  failure.amount = nearest.distance_m;
-  return failure;
-}
-
-template <int N>
-PlanFailure find_bad_end(const Arm<N>& robot, const World3& world,
-                         const typename Arm<N>::Config& end, bool is_start,
-                         double min_clearance_m) noexcept {
-  PlanFailure failure;
-  failure.reason = nullptr;
-  const int i_joint = robot.joint_outside_limits(end);
-  if (i_joint != kNoJoint) {
-    failure.reason =
-        is_start ? "a joint's start is outside its limits" : "a joint's goal is outside its limits";
-    failure.i_joint = i_joint;
-    failure.amount = end[i_joint];
-    failure.lower = robot.lower()[i_joint];
-    failure.upper = robot.upper()[i_joint];
-    return failure;
-  }
-  const ArmContact contact = robot.clearance(world, end, min_clearance_m);
-  const bool is_self = contact.i_obstacle == kSelfObstacle;
-  if (!is_self && contact.clearance.distance_m >= min_clearance_m) return failure;
-  if (is_self) {
-    failure.reason = is_start ? "start is in self-collision" : "goal is in self-collision";
-  } else {
-    failure.reason =
-        is_start ? "start is closer than min_clearance" : "goal is closer than min_clearance";
-  }
-  failure.i_link = contact.i_link;
-  failure.i_other_link = contact.i_other_link;
-  failure.i_obstacle = contact.i_obstacle;
-  failure.amount = contact.clearance.distance_m;
-  return failure;
 }
 
 const char* reason_of(ViolationKind kind) noexcept {
@@ -345,12 +298,15 @@ bool Planner<Robot>::check_request(const PlanRequest<Robot>& request,
 template <class Robot>
 bool Planner<Robot>::check_end(const PlanRequest<Robot>& request, bool is_start,
                                PlanResult<Robot>& result) const SOPT_RT {
-  const typename Robot::Config& end = is_start ? request.start : request.goal;
-  const PlanFailure failure =
-      find_bad_end(robot_, *request.world, end, is_start, request.options.min_clearance_m);
-  if (failure.reason == nullptr) return true;
-  result.status = is_start ? PlanStatus::kBadStart : PlanStatus::kBadGoal;
-  result.failure = failure;
+  const BrokenEnd broken = find_broken_end(robot_, request, is_start);
+  if (broken.reason == nullptr) return true;
+  fail(result, is_start ? PlanStatus::kBadStart : PlanStatus::kBadGoal, PlanStage::kRequest,
+       broken.reason, broken.amount, broken.i_obstacle);
+  result.failure.i_link = broken.i_link;
+  result.failure.i_other_link = broken.i_other_link;
+  result.failure.i_joint = broken.i_joint;
+  result.failure.lower = broken.lower;
+  result.failure.upper = broken.upper;
   return false;
 }
 

@@ -41,12 +41,12 @@ struct PlanFailure {
   PlanStage stage = PlanStage::kRequest;
   const char* reason = "not planned";  // static text: what went wrong, in words
   int i_link = 0;
-  int i_obstacle = kNoObstacle;  // kBoundsObstacle: the bounds
-  double t_s = 0.0;              // along the rejected plan, when there was one
-  double amount = 0.0;           // of the violation, or the offending value
-  int i_other_link = kNoLink;    // with kSelfObstacle: the link that i_link is too close to
-  int i_joint = kNoJoint;        // whose position `amount` is not within the limits below
-  double lower = 0.0, upper = 0.0;
+  int i_obstacle = kNoObstacle;     // kBoundsObstacle: the bounds
+  double t_s = 0.0;                 // along the rejected plan, when there was one
+  double amount = 0.0;              // of the violation, or the offending value
+  int i_other_link = kNoLink;       // with kSelfObstacle: the link that i_link is too close to
+  int i_joint = kNoJoint;           // whose position `amount` is not within lower and upper
+  double lower = 0.0, upper = 0.0;  // of an end that is too close, lower: the clearance it needs
 };
 
 struct StageTimes {

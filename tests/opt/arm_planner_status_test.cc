@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "opt/request_rules.h"
 #include "tests/support/arm_planner_fixture.h"
 
 namespace sopt::oracle {
@@ -87,6 +88,80 @@ TEST_F(ArmPlannerRefuses, EndsCloserThanMinClearance) {
   request_.options.min_clearance_m = 0.4 * gap_m;
   request_.start = upright;
   expect_valid(robot_, request_, plan());
+}
+
+// A ball next to link 2 of the upright arm.
+TEST_F(ArmPlannerRefuses, EndsTooNearMinClearanceForAnyMotionAtOnce) {
+  const Robot::Config upright = {-1.2, 0.0, -0.2, 0.0, 0.0};
+  const Vec3 ahead(std::cos(upright[0]), std::sin(upright[0]), 0.0);
+  const double needed_m = request_.options.min_clearance_m + kEndRoom_m;
+  const auto add_ball = [&](double gap_m) {
+    test_.world.reset();
+    add(Sphere3{(0.05 - 0.068 - 0.05 - gap_m) * ahead + 0.3 * Vec3::UnitZ(), 0.05});
+  };
+  for (const double gap_m : {1.001e-4, 1.05e-4, 1.1e-4, 1.2e-4, needed_m - 1e-9}) {
+    SCOPED_TRACE(gap_m);
+    add_ball(gap_m);
+    expect_bad_ends(upright, [&](const PlanFailure& failure) {
+      EXPECT_EQ(failure.i_link, 2);
+      EXPECT_EQ(failure.i_obstacle, 0);
+      EXPECT_NEAR(failure.amount, gap_m, 1e-9);
+      EXPECT_EQ(failure.lower, needed_m);
+      EXPECT_NE(std::string(failure.reason).find("too near min_clearance"), std::string::npos);
+    });
+  }
+  for (const double gap_m : {needed_m + 1e-9, 1.3e-4}) {
+    SCOPED_TRACE(gap_m);
+    add_ball(gap_m);
+    for (const bool is_start : {true, false}) {
+      PlanRequest<Robot> request = request_;
+      (is_start ? request.start : request.goal) = upright;
+      expect_valid(robot_, request, test_planner_.planner.plan(request));
+    }
+  }
+}
+
+TEST_F(ArmPlannerRefuses, ContinuousJointsWoundUpBeyondAThousandTurns) {
+  RandomArm<4> chain;
+  for (ArmJoint& joint : chain.description.joints) {
+    constexpr double kEndless = std::numeric_limits<double>::infinity();
+    joint = {{Mat3::Identity(), {0.0, 0.0, 0.3}},
+             Vec3::UnitY(),
+             JointKind::kContinuous,
+             -kEndless,
+             kEndless,
+             2.0,
+             9.0};
+  }
+  chain.description.joints[0].axis = Vec3::UnitZ();
+  const LinkCapsule tool = {4, Vec3::Zero(), {0.0, 0.0, 0.2}, 0.03};
+  chain.description.capsules = {&tool, 1};
+  ASSERT_EQ(chain.arm.reset(chain.description), ArmStatus::kOk);
+  PlanRequest<Arm<4>> request;
+  request.world = &test_.world;
+  request.options = PlanOptions::arm();
+  request.start = {-1.2, 0.3, 0.3, 0.4};
+  request.goal = {1.1, 0.4, 0.4, 0.6};
+  TestArmPlanner<4> test_planner(chain.arm);
+  for (const bool is_start : {true, false}) {
+    for (const double bound : {-kMaxWound_rad, kMaxWound_rad}) {
+      SCOPED_TRACE((is_start ? "start " : "goal ") + std::to_string(bound));
+      PlanRequest<Arm<4>> wound = request;
+      Arm<4>::Config& end = is_start ? wound.start : wound.goal;
+      end = Arm<4>::Config::Constant(bound);
+      expect_valid(chain.arm, wound, test_planner.planner.plan(wound));
+      for (const double value : {1.0001 * bound, std::copysign(1e9, bound)}) {
+        end[2] = value;
+        const PlanResult<Arm<4>> result = test_planner.planner.plan(wound);
+        expect_failed(result, is_start ? PlanStatus::kBadStart : PlanStatus::kBadGoal,
+                      PlanStage::kRequest);
+        EXPECT_EQ(result.failure.i_joint, 2);
+        EXPECT_EQ(result.failure.amount, value);
+        EXPECT_EQ(result.failure.lower, -kMaxWound_rad);
+        EXPECT_EQ(result.failure.upper, kMaxWound_rad);
+      }
+    }
+  }
 }
 
 TEST_F(ArmPlannerRefuses, EndsInSelfCollisionWithBothLinksAndTheDepth) {

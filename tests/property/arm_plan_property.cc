@@ -113,7 +113,7 @@ void check_failure(const PlanRequest<Arm<N>>& request, const PlanResult<Arm<N>>&
     case PlanStatus::kBadStart:
     case PlanStatus::kBadGoal:
       ++totals.num_refused;
-      report.expect("evidence of a bad end", failure.amount < request.options.min_clearance_m);
+      report.expect("evidence of a bad end", failure.amount < failure.lower);
       break;
     case PlanStatus::kDeadline:
       ++totals.num_cut;

@@ -45,7 +45,7 @@ TEST_F(ArmBadInputTest, StartInAnObstacleNamesLinkObstacleAndDepth) {
   scene_["obstacles"].push_back(json::parse(kInTheArm));
   const json failure = refused("bad_start",
                                "start is closer than min_clearance: clearance -0.118 m of link "
-                               "link_2 from obstacle \"lump\"");
+                               "link_2 from obstacle \"lump\", at least 0.00012002 m needed");
   EXPECT_EQ(failure["link"], 2);
   EXPECT_EQ(failure["obstacle"], "lump");
   EXPECT_NEAR(failure["amount"].get<double>(), -0.118, 1e-12);
@@ -58,14 +58,15 @@ TEST_F(ArmBadInputTest, GoalInAnObstacleNamesLinkObstacleAndDepth) {
   scene_["obstacles"][0]["position"] = {0.3, 0, 0.475};
   const json failure = refused("bad_goal",
                                "goal is closer than min_clearance: clearance -0.11 m of link "
-                               "link_4 from obstacle \"lump\"");
+                               "link_4 from obstacle \"lump\", at least 0.00012002 m needed");
   EXPECT_EQ(failure["obstacle"], "lump");
 }
 
 TEST_F(ArmBadInputTest, EndsInSelfCollisionNameBothLinksAndTheDepth) {
   const json folded = {0, 2.5, -1.2, 0, 0};
   const std::string line =
-      " is in self-collision: clearance -0.01894 m of link link_4 from link link_1";
+      " is in self-collision: clearance -0.0189383 m of link link_4 from link link_1, "
+      "at least 0.0001 m needed";
   scene_["start"] = folded;
   json failure = refused("bad_start", "start" + line);
   EXPECT_EQ(failure["link"], 4);

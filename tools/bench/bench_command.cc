@@ -27,8 +27,7 @@ struct BenchArguments {
   bool by_segments = false;
 };
 
-int run_by_segments(const std::vector<std::filesystem::path>& scenes,
-                    const BenchArguments& arguments) {
+int run_by_segments(const BenchScenes& scenes, const BenchArguments& arguments) {
   std::vector<SegmentsRun> runs;
   int failures = 0;
   for (const char* const label : {"3", "5", "7", "9", "auto"}) {
@@ -50,12 +49,13 @@ int run_by_segments(const std::vector<std::filesystem::path>& scenes,
 
 int run_bench_plan(BenchArguments arguments) {
   arguments.options.cpu_time = arguments.clock == "cpu";
-  const std::vector<std::filesystem::path> scenes = given_or_shipped_scenes(arguments.scenes);
+  const std::vector<std::filesystem::path> files = given_or_shipped_scenes(arguments.scenes);
   std::vector<std::filesystem::path> outputs;
   if (!arguments.json_file.empty()) outputs.emplace_back(arguments.json_file);
-  check_outputs(outputs, scenes);
+  check_outputs(outputs, files);
+  const BenchScenes scenes = load_bench_scenes(files);
   (void)std::printf("%s\n%zu scenes x %d seeds x %d, %s\n", describe_machine().c_str(),
-                    scenes.size(), arguments.options.num_seeds, arguments.options.num_repeats,
+                    files.size(), arguments.options.num_seeds, arguments.options.num_repeats,
                     arguments.options.cpu_time ? "thread CPU time" : "elapsed time");
   if (arguments.by_segments) return run_by_segments(scenes, arguments);
   const BenchRun run = run_bench(scenes, arguments.options);

@@ -6,7 +6,6 @@
 #include <limits>
 #include <memory>
 
-#include "tools/bench/bench_scenes.h"
 #include "tools/bench/bench_statistics.h"
 #include "tools/cli/planner_host.h"
 #include "tools/io/line_chart.h"
@@ -200,10 +199,9 @@ std::optional<double> ImproveScene::unit_length() const {
   return best;
 }
 
-std::vector<ImproveScene> run_bench_improve(const std::vector<std::filesystem::path>& files,
+std::vector<ImproveScene> run_bench_improve(const BenchScenes& scenes,
                                             const BenchImproveOptions& options) {
   std::vector<ImproveScene> runs;
-  const BenchScenes scenes = load_bench_scenes(files);
   for (const AnyScene& any : scenes.scenes) {
     std::visit(
         [&](const auto& scene) {

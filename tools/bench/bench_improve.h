@@ -7,13 +7,13 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "opt/planner.h"
+#include "tools/bench/bench_scenes.h"
 
 namespace sopt {
 
@@ -44,9 +44,9 @@ struct ImproveScene {
   [[nodiscard]] std::optional<double> unit_length() const;
 };
 
-// One call to warm up per scene. Throws what load_bench_scenes and PlannerHost throw.
-[[nodiscard]] std::vector<ImproveScene> run_bench_improve(
-    const std::vector<std::filesystem::path>& files, const BenchImproveOptions& options);
+// One call to warm up per scene. Throws what PlannerHost throws.
+[[nodiscard]] std::vector<ImproveScene> run_bench_improve(const BenchScenes& scenes,
+                                                          const BenchImproveOptions& options);
 
 // Relative lengths `budget_ms` after the first plan, in the order of the cases that have one.
 [[nodiscard]] std::vector<double> length_ratios(const ImproveScene& scene, double budget_ms);

@@ -45,10 +45,11 @@ int run_bench_improve_command(BenchImproveArguments arguments) {
     if (!file.empty()) paths.emplace_back(file);
   }
   check_outputs(paths, files);
+  const BenchScenes bench_scenes = load_bench_scenes(files);
   (void)std::printf("%s\n%zu scenes x %d seeds, %s\n", describe_machine().c_str(), files.size(),
                     options.num_seeds,
                     arguments.clock == "cpu" ? "thread CPU time" : "elapsed time");
-  const std::vector<ImproveScene> scenes = run_bench_improve(files, options);
+  const std::vector<ImproveScene> scenes = run_bench_improve(bench_scenes, options);
   (void)std::fputs(describe(scenes, budgets_ms).c_str(), stdout);
   std::vector<OutputFile> outputs;
   if (!arguments.json_file.empty()) {

@@ -83,9 +83,7 @@ void run_scene(const SceneOf<Robot>& scene, const BenchPlanOptions& options, Ben
 
 }  // namespace
 
-BenchRun run_bench(const std::vector<std::filesystem::path>& files,
-                   const BenchPlanOptions& options) {
-  const BenchScenes scenes = load_bench_scenes(files);
+BenchRun run_bench(const BenchScenes& scenes, const BenchPlanOptions& options) {
   BenchRun run;
   run.kind = scenes.kind;
   for (const AnyScene& any : scenes.scenes) {

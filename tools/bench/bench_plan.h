@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -54,8 +53,7 @@ struct BenchRun {
   std::vector<double> world_build_us;  // one per scene: emptied, obstacles added, broad phase
 };
 
-// Throws what load_bench_scenes and PlannerHost throw.
-[[nodiscard]] BenchRun run_bench(const std::vector<std::filesystem::path>& files,
-                                 const BenchPlanOptions& options);
+// Throws what PlannerHost throws.
+[[nodiscard]] BenchRun run_bench(const BenchScenes& scenes, const BenchPlanOptions& options);
 
 }  // namespace sopt

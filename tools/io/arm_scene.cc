@@ -105,6 +105,9 @@ void read_arm(const JsonField& root, const NamedArm<N>& named, ArmScene<N>& scen
   if (base) {
     base->check_fields({"position", "quaternion_xyzw"}, is_documentary);
     X_WB = read_pose(*base);
+    if (X_WB.position.norm() > kMaxBase_m) {
+      base->at("position", "").fail("[x, y, z] at most " + show(kMaxBase_m) + " m from the origin");
+    }
   }
   if (limits) read_limits<N>(*limits, named.joint_names, joints);
   scene.arm = rebuilt<N>(named.arm, X_WB, joints);

@@ -185,9 +185,10 @@ std::string describe_failure(const SceneOf<Robot>& scene, const PlanResult<Robot
         format(": %s is %.6g, allowed is %.6g to %.6g", joint_name(scene, failure.i_joint).c_str(),
                failure.amount, failure.lower, failure.upper);
   } else if (failure.i_obstacle != kNoObstacle) {
-    line += format(": clearance %.4g m%s from %s", failure.amount,
+    line += format(": clearance %.6g m%s from %s", failure.amount,
                    of_link(scene, failure.i_link).c_str(),
                    partner_name(scene, failure.i_obstacle, failure.i_other_link).c_str());
+    if (failure.lower > 0.0) line += format(", at least %.6g m needed", failure.lower);
   } else if (failure.amount != 0.0) {
     line += format(": %.4g", failure.amount);
   }

@@ -173,6 +173,13 @@ void check_locked(const RobotModel& model, const JointChoice& choice) {
   }
 }
 
+void check_base(const RobotModel& model, const std::string& name, const ArmJoint& first) {
+  const double base_m = first.origin.position.norm();
+  if (base_m <= kMaxBase_m) return;
+  fail(model, "free joint " + in_quotes(name) + " is " + show(base_m) +
+                  " m from the root link; it must be at most " + show(kMaxBase_m) + " m");
+}
+
 [[noreturn]] void fail_arm(const RobotModel& model, ArmStatus status) {
   switch (status) {
     case ArmStatus::kTooManyCapsules:
@@ -278,6 +285,7 @@ NamedArm<N> make_arm(const RobotModel& model, const JointChoice& choice) {
                                  joint.a_max};
     named.link_names.push_back(model.links[at(joint.i_child)]);
   }
+  check_base(model, named.joint_names[0], description.joints[0]);
   const Bodies bodies = find_bodies(model, placements);
   const std::vector<LinkCapsule> capsules = fold_capsules(model, placements, bodies);
   description.capsules = capsules;

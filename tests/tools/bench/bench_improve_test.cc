@@ -73,7 +73,7 @@ class RunBenchImproveTest : public ::testing::Test {
     options.budgets_ms = std::move(budgets_ms);
     options.num_seeds = 3;
     options.clock = manual.clock();
-    return run_bench_improve({kSceneFile, kSceneFile}, options);
+    return run_bench_improve(load_bench_scenes({kSceneFile, kSceneFile}), options);
   }
 };
 
@@ -115,7 +115,7 @@ TEST_F(RunBenchImproveTest, PlansArmsRelativeToTheirReference) {
   std::vector<std::filesystem::path> files = {folder / "tools/scenes/arm/arm_2_01.json"};
   const auto known = folder / "../shared/data/scenes/mbm_panda_table_under_pick_0001.json";
   if (std::filesystem::exists(known)) files.push_back(known);
-  const std::vector<ImproveScene> scenes = run_bench_improve(files, options);
+  const std::vector<ImproveScene> scenes = run_bench_improve(load_bench_scenes(files), options);
   EXPECT_EQ(scenes[0].name, "arm_2_01");
   EXPECT_FALSE(scenes[0].reference_length);
   EXPECT_EQ(num_failures(scenes), 0);

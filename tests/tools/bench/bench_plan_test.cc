@@ -23,7 +23,7 @@ BenchPlanOptions options_with(int num_seeds, int num_repeats = 1) {
 }
 
 TEST(BenchPlanTest, PlansArmsAsItDoesInThePlane) {
-  const BenchRun run = run_bench({kArm2, kArm8}, options_with(2, 2));
+  const BenchRun run = run_bench(load_bench_scenes({kArm2, kArm8}), options_with(2, 2));
   EXPECT_EQ(run.kind, SceneKind::kArm);
   EXPECT_EQ(run.world_build_us.size(), 2U);
   ASSERT_EQ(run.cases.size(), 8U);
@@ -48,7 +48,7 @@ TEST(BenchPlanTest, OptionsReachArms) {
   options.algorithm.segments = "3";
   options.algorithm.max_window = kLongestWindow;
   options.algorithm.no_merge = true;
-  const BenchRun run = run_bench({kArm8}, options);
+  const BenchRun run = run_bench(load_bench_scenes({kArm8}), options);
   EXPECT_EQ(run.cases.front().segments_initial, 3);
   EXPECT_EQ(run.cases.front().segments_final, 3);
 }
@@ -56,7 +56,7 @@ TEST(BenchPlanTest, OptionsReachArms) {
 TEST(BenchPlanTest, ComparesArmsWithTheConvergedOptimum) {
   BenchPlanOptions options = options_with(1);
   options.compare_converged = true;
-  const BenchRun run = run_bench({kArm2}, options);
+  const BenchRun run = run_bench(load_bench_scenes({kArm2}), options);
   EXPECT_NEAR(run.cases.front().length_ratio, 1.0, 0.2);
 }
 
@@ -64,7 +64,7 @@ TEST(BenchPlanTest, RelatesLengthsToTheScenesReference) {
   const std::filesystem::path file =
       kFolder / "../shared/data/scenes/mbm_panda_table_under_pick_0001.json";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
-  const BenchRun run = run_bench({file}, options_with(1));
+  const BenchRun run = run_bench(load_bench_scenes({file}), options_with(1));
   const AnyScene any = load_any_scene(file);
   const auto reference = std::visit([](const auto& scene) { return reference_of(scene); }, any);
   ASSERT_TRUE(reference);
@@ -110,7 +110,7 @@ TEST(BenchPlanReportTest, BySegmentsHasTheUnitOfTheScenes) {
 }
 
 TEST(BenchPlanReportTest, OfARunInThePlaneSaysWhatItDid) {
-  const BenchRun run = run_bench({kPlane}, options_with(2));
+  const BenchRun run = run_bench(load_bench_scenes({kPlane}), options_with(2));
   EXPECT_EQ(run.kind, SceneKind::kPlane);
   EXPECT_EQ(num_without_path(run), 0);
   EXPECT_EQ(num_failures(run), 0);

@@ -134,6 +134,11 @@ TEST_F(ArmSceneTest, JointsAreTheRobotsOwnWhenTheSceneNamesNone) {
   EXPECT_EQ(std::get<ArmScene<5>>(load(file_)).joint_names.back(), "flange");
 }
 
+TEST_F(ArmSceneTest, TheBaseMayStandAHundredMetresAway) {
+  preset_["base"] = {{"position", {60, 0, -80}}};
+  EXPECT_EQ(load_preset().arm.kinematics().X_WB.position, Vec3(60, 0, -80));
+}
+
 TEST_F(ArmSceneTest, TheBaseMovesTheWholeArmAndNothingElse) {
   ArmScene<5> at_origin = load_preset();
   preset_["base"] = {{"position", {1, 2, 3}}, {"quaternion_xyzw", {0, 0.6, 0, 0.8}}};

@@ -125,6 +125,18 @@ TEST_F(RobotFileTest, AxesAreMadeUnit) {
   EXPECT_EQ(load().joints[1].axis, Vec3::UnitY());
 }
 
+TEST_F(RobotFileTest, TheFirstFreeJointIsAtMostAHundredMetresFromTheRoot) {
+  json_["joints"][0]["xyz"] = {60, 0, 80};
+  EXPECT_EQ((make_arm<4>(load(), {{"a", "b", "c", "d"}, {}}).joint_names.front()), "a");
+  json_["joints"][0]["xyz"] = {60, 0, 81};
+  const std::string line = message_of([&] {
+    (void)make_arm<4>(load(), {{"a", "b", "c", "d"}, {}});
+  });
+  EXPECT_NE(line.find(": free joint \"a\" is 100.8"), std::string::npos) << line;
+  EXPECT_NE(line.find(" m from the root link; it must be at most 100.0 m"), std::string::npos)
+      << line;
+}
+
 TEST_F(RobotFileTest, BranchesGiveTheirCapsulesToTheLinkTheyHangOn) {
   add_joint("finger_joint", "prismatic", "hand", "finger");
   json_["joints"].back()["lower"] = 0.25;  // 0 is outside: stays at 0.25
