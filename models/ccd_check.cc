@@ -25,6 +25,13 @@ void find_support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* o
   ccdVec3Set(out, farthest.x(), farthest.y(), farthest.z());
 }
 
+// Libccd begins with the points of the two that face each other.
+void find_first_direction(const void* first, const void* second, ccd_vec3_t* out) noexcept {
+  const Vec3 d =
+      static_cast<const Inflated*>(second)->offset - static_cast<const Inflated*>(first)->offset;
+  ccdVec3Set(out, d.x(), d.y(), d.z());
+}
+
 }  // namespace
 
 bool may_overlap(const Convex3& a, const Convex3& b, double inflate_m) SOPT_RT {
@@ -32,6 +39,7 @@ bool may_overlap(const Convex3& a, const Convex3& b, double inflate_m) SOPT_RT {
   Inflated second{b, b.center - a.center, b.radius_m + inflate_m + kCcdPad_m};
   ccd_t ccd;
   CCD_INIT(&ccd);
+  ccd.first_dir = find_first_direction;
   ccd.support1 = find_support;
   ccd.support2 = find_support;
   ccd.max_iterations = kMaxCcdIterations;

@@ -1,11 +1,12 @@
 // Verify's rules for arms: what holds at waypoints and within a step is checked here in closed
-// form, clearance by ArmSweep. What a step's motion is, the states and inputs say: a parabola per
-// joint.
+// form, clearance by ArmSweep and, at waypoints, ArmCcd. What a step's motion is, the states and
+// inputs say: a parabola per joint.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "opt/verify.h"
+#include "opt/verify_arm_ccd.h"
 #include "opt/verify_arm_sweep.h"
 
 namespace sopt {
@@ -16,6 +17,8 @@ constexpr double kWholeTurnTol_rad = 1e-12;  // of a continuous joint's angle
 
 static_assert(sizeof(ArmSweep<kMaxArmJoints>) + sizeof(ArmMotion<kMaxArmJoints>) < 60 * 1024,
               "verify stays within 64 KiB of stack");
+static_assert(sizeof(ArmCcd<kMaxArmJoints>) < sizeof(ArmSweep<kMaxArmJoints>),
+              "one after the other");
 
 // Collects the certificate and the earliest violation.
 template <int N>
@@ -103,15 +106,26 @@ class ArmCheck {
     // Larger defects are violations, and nothing after the first one matters.
     const double defect = std::min(certificate_.dynamics_defect, kMaxDynamicsDefect);
     const ArmMotion<N> motion(arm_, trajectory_, defect);
-    ArmSweep<N> sweep(arm_, problem_, motion, trajectory_.dt_s, x_stop);
-    const Violation found = sweep.run(certificate_);
-    if (found.kind != ViolationKind::kNone) violation_ = found;
+    ask_ccd(motion, sweep(motion, x_stop));
   }
 
   [[nodiscard]] const Certificate& certificate() const noexcept { return certificate_; }
   [[nodiscard]] const Violation& violation() const noexcept { return violation_; }
 
  private:
+  // Not inlined: the two are on the stack one after the other. Returns where to stop looking.
+  [[gnu::noinline]] double sweep(const ArmMotion<N>& motion, double x_stop) noexcept {
+    ArmSweep<N> sweep(arm_, problem_, motion, trajectory_.dt_s, x_stop);
+    const Violation found = sweep.run(certificate_);
+    if (found.kind != ViolationKind::kNone) violation_ = found;
+    return sweep.x_stop();
+  }
+  [[gnu::noinline]] void ask_ccd(const ArmMotion<N>& motion, double x_stop) noexcept {
+    ArmCcd<N> ccd(arm_, problem_, motion);
+    const Violation found = ccd.run(trajectory_.dt_s, x_stop);
+    if (found.kind != ViolationKind::kNone) violation_ = found;
+  }
+
   // Distance from where the trajectory should begin or end; a continuous joint may have turned
   // around any number of times.
   [[nodiscard]] double end_error(const State& state, const Config& wanted) const noexcept {

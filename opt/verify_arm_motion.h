@@ -22,6 +22,12 @@ struct LinkFrames {
   std::array<Pose3, N + 1> X_WL;
 };
 
+// By columns: Eigen's product is a call.
+[[nodiscard]] inline Vec3 moved(const Pose3& X, const Vec3& p) SOPT_RT {
+  return p.x() * X.rotation.col(0) + p.y() * X.rotation.col(1) + p.z() * X.rotation.col(2) +
+         X.position;
+}
+
 template <int N>
 class ArmMotion {
  public:

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/ccd_check.h"
-
 namespace sopt {
 namespace {
 
@@ -12,12 +10,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding_m = 1e-12;  // of frames and points, metres away from the base
 
 constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-
-// By columns: Eigen's product is a call.
-Vec3 move(const Pose3& X, const Vec3& p) noexcept {
-  return p.x() * X.rotation.col(0) + p.y() * X.rotation.col(1) + p.z() * X.rotation.col(2) +
-         X.position;
-}
 
 Vec3 seen_from(const Pose3& X, const Vec3& p) noexcept {
   const Vec3 d = p - X.position;
@@ -64,21 +56,6 @@ class Gathering {
 
 }  // namespace
 
-double box_gap_m(const Aabb3& a, const Aabb3& b) SOPT_RT {
-  return (a.lower - b.upper).cwiseMax(b.lower - a.upper).cwiseMax(0.0).norm();
-}
-
-Aabb3 box_around(std::span<const Vec3> points, double grow_m) SOPT_RT {
-  Aabb3 box{points[0], points[0]};
-  for (const Vec3& p : points.subspan(1)) {
-    box.lower = box.lower.cwiseMin(p);
-    box.upper = box.upper.cwiseMax(p);
-  }
-  box.lower.array() -= grow_m;
-  box.upper.array() += grow_m;
-  return box;
-}
-
 template <int N>
 struct ArmPairs<N>::Places {
   std::array<Vec3, 4> points;
@@ -93,11 +70,11 @@ typename ArmPairs<N>::Places ArmPairs<N>::places(const ArmStretch<N>& stretch, c
   const Capsule3& c = motion_.capsule_L(i_capsule);
   const bool is_sphere = c.p0 == c.p1;
   Places places;
-  places.points[at(places.num++)] = move(from, c.p0);
-  if (!is_sphere) places.points[at(places.num++)] = move(from, c.p1);
+  places.points[at(places.num++)] = moved(from, c.p0);
+  if (!is_sphere) places.points[at(places.num++)] = moved(from, c.p1);
   if (stretch.is_instant()) return places;
-  places.points[at(places.num++)] = move(to, c.p0);
-  if (!is_sphere) places.points[at(places.num++)] = move(to, c.p1);
+  places.points[at(places.num++)] = moved(to, c.p0);
+  if (!is_sphere) places.points[at(places.num++)] = moved(to, c.p1);
   return places;
 }
 
@@ -110,7 +87,7 @@ double ArmPairs<N>::quick_bound_m(const ArmStretch<N>& stretch, const ArmPair& p
       stretch.is_instant() ? 0.0 : motion_.chord_error_m(stretch.change, l, base);
   const Pose3& X0 = stretch.from->X_WL[at(l)];
   const Pose3& X1 = stretch.to->X_WL[at(l)];
-  Vec3 centers[] = {move(X0, sphere.center), move(X1, sphere.center)};
+  Vec3 centers[] = {moved(X0, sphere.center), moved(X1, sphere.center)};
   Aabb3 other = pair.obstacle_box;
   double radius_m = sphere.radius_m + error_m + kRounding_m;
   if (pair.is_self()) {
@@ -120,7 +97,7 @@ double ArmPairs<N>::quick_bound_m(const ArmStretch<N>& stretch, const ArmPair& p
     other = {fixed.center, fixed.center};
     radius_m += fixed.radius_m;
   }
-  const double gap_m = box_gap_m(box_around(centers, 0.0), other);
+  const double gap_m = box_gap_m(box_around(centers), other);
   return gap_m > 0.0 ? gap_m - radius_m : -kInfinity;
 }
 
@@ -145,7 +122,7 @@ ClearanceBounds ArmPairs<N>::obstacle_bounds(const ArmStretch<N>& stretch, doubl
   for (int i = arm_.first_capsule(l); i < arm_.first_capsule(l + 1); ++i) {
     const Places found = places(stretch, X0, X1, i);
     const double grow_m = motion_.capsule_L(i).radius_m + error_m + kRounding_m;
-    const double gap_m = box_gap_m(box_around(found.view(), 0.0), pair.obstacle_box);
+    const double gap_m = box_gap_m(box_around(found.view()), pair.obstacle_box);
     if (gap_m > 0.0 && gathering.is_enough(gap_m - grow_m)) continue;
     if (!gathering.look(obstacle, found.view(), grow_m + obstacle.radius_m, pair.direction)) break;
   }
@@ -166,12 +143,11 @@ ClearanceBounds ArmPairs<N>::self_bounds(const ArmStretch<N>& stretch, double en
   Gathering gathering(stretch.is_instant(), enough_m);
   for (int i = moving.first; i < moving.last; ++i) {
     const Places found = places(stretch, X0, X1, i);
-    const Aabb3 box = box_around(found.view(), 0.0);
+    const Aabb3 box = box_around(found.view());
     for (int k = fixed.first; k < fixed.last; ++k) {
       const Capsule3& c = motion_.capsule_L(k);
       const double grow_m = motion_.capsule_L(i).radius_m + c.radius_m + error_m + kRounding_m;
-      const Vec3 ends[] = {c.p0, c.p1};
-      const double gap_m = box_gap_m(box, box_around(ends, 0.0));
+      const double gap_m = box_gap_m(box, {c.p0.cwiseMin(c.p1), c.p0.cwiseMax(c.p1)});
       if (gap_m > 0.0 && gathering.is_enough(gap_m - grow_m)) continue;
       std::array<Vec3, 8> points;
       std::size_t num = 0;
@@ -185,41 +161,6 @@ ClearanceBounds ArmPairs<N>::self_bounds(const ArmStretch<N>& stretch, double en
     }
   }
   return gathering.bounds();
-}
-
-template <int N>
-bool ArmPairs<N>::may_touch(const LinkFrames<N>& frames, const ArmPair& pair, double reach_m,
-                            double inflate_m) const SOPT_RT {
-  const auto capsule_W = [&](int i, int i_link) {
-    const Capsule3& c = motion_.capsule_L(i);
-    const Pose3& X = frames.X_WL[at(i_link)];
-    return Capsule3{move(X, c.p0), move(X, c.p1), c.radius_m};
-  };
-  const auto box_of = [](const Capsule3& c) {
-    const Vec3 ends[] = {c.p0, c.p1};
-    return box_around(ends, c.radius_m);
-  };
-  const int l = pair.i_link;
-  if (!pair.is_self()) {
-    for (int i = arm_.first_capsule(l); i < arm_.first_capsule(l + 1); ++i) {
-      const Capsule3 capsule = capsule_W(i, l);
-      if (box_gap_m(box_of(capsule), pair.obstacle_box) > reach_m) continue;
-      if (may_overlap(world_.obstacle(pair.i_obstacle), capsule, inflate_m)) return true;
-    }
-    return false;
-  }
-  const ArmBody& one = arm_.body(pair.i_body);
-  const ArmBody& other = arm_.body(pair.i_other_body);
-  for (int i = one.first; i < one.last; ++i) {
-    const Capsule3 capsule = capsule_W(i, l);
-    const Aabb3 box = box_of(capsule);
-    for (int k = other.first; k < other.last; ++k) {
-      const Capsule3 second = capsule_W(k, other.i_link);
-      if (box_gap_m(box, box_of(second)) > reach_m) continue;
-      if (may_overlap(to_convex(second), capsule, inflate_m)) return true;
-    }
-  }
-  return false;
 }
 
 template class ArmPairs<4>;

@@ -42,9 +42,17 @@ struct ClearanceBounds {
 };
 
 // Gap between two boxes, 0 when they overlap.
-[[nodiscard]] double box_gap_m(const Aabb3& a, const Aabb3& b) SOPT_RT;
-// Box around the places of a sphere or capsule at both ends of a stretch, grown by `grow_m`.
-[[nodiscard]] Aabb3 box_around(std::span<const Vec3> points, double grow_m) SOPT_RT;
+[[nodiscard]] inline double box_gap_m(const Aabb3& a, const Aabb3& b) SOPT_RT {
+  return (a.lower - b.upper).cwiseMax(b.lower - a.upper).cwiseMax(0.0).norm();
+}
+[[nodiscard]] inline Aabb3 box_around(std::span<const Vec3> points) SOPT_RT {
+  Aabb3 box{points[0], points[0]};
+  for (const Vec3& p : points.subspan(1)) {
+    box.lower = box.lower.cwiseMin(p);
+    box.upper = box.upper.cwiseMax(p);
+  }
+  return box;
+}
 
 template <int N>
 class ArmPairs {
@@ -60,11 +68,6 @@ class ArmPairs {
   // A quick lower bound by spheres and boxes.
   [[nodiscard]] double quick_bound_m(const ArmStretch<N>& stretch,
                                      const ArmPair& pair) const SOPT_RT;
-
-  // Asks libccd about every two capsules, or capsule and obstacle, whose boxes are within reach_m
-  // of each other. True when it says that some may overlap when grown by inflate_m.
-  [[nodiscard]] bool may_touch(const LinkFrames<N>& frames, const ArmPair& pair, double reach_m,
-                               double inflate_m) const SOPT_RT;
 
  private:
   struct Places;  // of a core at both ends of a stretch

@@ -7,8 +7,6 @@ namespace sopt {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Pairs proven further apart than this, and than the hard minimum, are no matter for libccd.
-constexpr double kCcdReach_m = 0.02;
 // Of what the certificate promises; the rest is for the bounds of the place itself.
 constexpr double kShareOfPromise = 0.9;
 
@@ -93,7 +91,7 @@ void ArmSweep<N>::sweep_obstacles() noexcept {
     for (int l = 0; l <= N; ++l) {
       if (arm_.first_capsule(l) == arm_.first_capsule(l + 1)) continue;
       const double gap_m = box_gap_m(areas_[at(l)], box);
-      if (gap_m >= std::max(nearest.wanted_m(), kCcdReach_m)) {
+      if (gap_m >= nearest.wanted_m()) {
         nearest.lower_m = std::min(nearest.lower_m, gap_m);
         continue;
       }
@@ -129,7 +127,6 @@ void ArmSweep<N>::sweep() noexcept {
         return is_open(pair, stretch, can_split);
       },
       [this](double x, const LinkFrames<N>& frames, int num) { look_at(x, frames, num); });
-  ask_ccd();
   num_pairs_ = 0;
 }
 
@@ -188,7 +185,7 @@ bool ArmSweep<N>::is_open(ArmPair& pair, const ArmStretch<N>& stretch, bool can_
     nearest.lower_m = std::min(nearest.lower_m, lower_m);
     return false;
   }
-  if (!can_split) note(stretch.x_from, lower_m, pair, false);
+  if (!can_split) note(stretch.x_from, lower_m, pair);
   return true;
 }
 
@@ -200,7 +197,7 @@ void ArmSweep<N>::look_at(double x, const LinkFrames<N>& frames, int num_pairs) 
     Nearest& nearest = this->nearest(pair);
     const double enough_m = std::max(nearest.upper_m, nearest.required_m);
     const ClearanceBounds found = bounds_.find_bounds(instant, enough_m, pair);
-    if (found.upper_m < nearest.required_m) note(x, found.upper_m, pair, false);
+    if (found.upper_m < nearest.required_m) note(x, found.upper_m, pair);
     if (found.upper_m >= nearest.upper_m) continue;
     nearest.upper_m = found.upper_m;
     nearest.x = x;
@@ -209,42 +206,10 @@ void ArmSweep<N>::look_at(double x, const LinkFrames<N>& frames, int num_pairs) 
 }
 
 template <int N>
-void ArmSweep<N>::ask_ccd() noexcept {
-  const auto is_near = [this](ArmPair& pair, const ArmStretch<N>& stretch) {
-    const double reach_m = std::max(kCcdReach_m, nearest(pair).required_m);
-    return bounds_.find_bounds(stretch, reach_m, pair).lower_m < reach_m;
-  };
-  num_stretches_ = 0;
-  walk(
-      1.0,
-      [&](ArmPair& pair, const ArmStretch<N>& stretch, bool can_split) {
-        if (!is_near(pair, stretch)) return false;
-        if (!can_split) ask_ccd(stretch.x_from, *stretch.from, pair);
-        return can_split;
-      },
-      [](double /*x*/, const LinkFrames<N>& /*frames*/, int /*num_pairs*/) {});
-  const double x_end = motion_.horizon();
-  if (!(x_end < x_stop_)) return;
-  motion_.find_frames(x_end, left_);
-  for (int i = 0; i < num_pairs_; ++i) ask_ccd(x_end, left_, pairs_[at(i)]);
-}
-
-template <int N>
-void ArmSweep<N>::ask_ccd(double x, const LinkFrames<N>& frames, ArmPair& pair) noexcept {
-  const double required_m = nearest(pair).required_m;
-  const ArmStretch<N> instant{&frames, &frames, x, x, {}};
-  const double reach_m = std::max(kCcdReach_m, required_m);
-  if (bounds_.find_bounds(instant, reach_m, pair).lower_m >= reach_m) return;
-  if (!bounds_.may_touch(frames, pair, reach_m, std::max(required_m, 0.0))) return;
-  note(x, bounds_.find_bounds(instant, kInfinity, pair).upper_m, pair, true);
-}
-
-template <int N>
-void ArmSweep<N>::note(double x, double lower_m, const ArmPair& pair,
-                       bool is_second_opinion) noexcept {
+void ArmSweep<N>::note(double x, double lower_m, const ArmPair& pair) noexcept {
   if (!(x < x_stop_)) return;
   x_stop_ = x;
-  finding_ = {true, is_second_opinion, lower_m, pair};
+  finding_ = {true, lower_m, pair};
 }
 
 // Of a collision the closest approach within its step.
@@ -258,7 +223,7 @@ Violation ArmSweep<N>::describe() noexcept {
   double x = x_stop_;
   double amount_m = finding_.lower_m;
   double least_m = nearest(finding_.pair).required_m;
-  for (int i = 0; i <= kNumPlaces && !finding_.is_second_opinion; ++i) {
+  for (int i = 0; i <= kNumPlaces; ++i) {
     const double x_place = step + static_cast<double>(i) / kNumPlaces;
     motion_.find_frames(x_place, left_);
     const ArmStretch<N> instant{&left_, &left_, x_place, x_place, {}};
@@ -268,8 +233,7 @@ Violation ArmSweep<N>::describe() noexcept {
     x = x_place;
   }
   const bool is_self = finding_.pair.is_self();
-  const auto collision = is_self ? ViolationKind::kSelfCollision : ViolationKind::kCollision;
-  return {finding_.is_second_opinion ? ViolationKind::kSecondOpinion : collision,
+  return {is_self ? ViolationKind::kSelfCollision : ViolationKind::kCollision,
           step,
           x * dt_s_,
           finding_.pair.i_link,

@@ -24,6 +24,8 @@ class ArmSweep {
 
   // Fills in the certificate's clearances. Returns the first violation before x_stop, or kNone.
   [[nodiscard]] Violation run(Certificate& certificate) noexcept;
+  // Of the violation that `run` found: nothing after it matters.
+  [[nodiscard]] double x_stop() const noexcept { return x_stop_; }
 
  private:
   static constexpr int kMaxPairs = 192;  // looked at together
@@ -48,7 +50,6 @@ class ArmSweep {
   };
   struct Finding {
     bool is_found = false;
-    bool is_second_opinion = false;
     double lower_m = 0.0;
     ArmPair pair;
   };
@@ -69,13 +70,11 @@ class ArmSweep {
 
   [[nodiscard]] bool is_open(ArmPair& pair, const ArmStretch<N>& stretch, bool can_split) noexcept;
   void look_at(double x, const LinkFrames<N>& frames, int num_pairs) noexcept;
-  void ask_ccd() noexcept;
-  void ask_ccd(double x, const LinkFrames<N>& frames, ArmPair& pair) noexcept;
 
   [[nodiscard]] Nearest& nearest(const ArmPair& pair) noexcept {
     return nearest_[pair.is_self() ? 1 : 0];
   }
-  void note(double x, double lower_m, const ArmPair& pair, bool is_second_opinion) noexcept;
+  void note(double x, double lower_m, const ArmPair& pair) noexcept;
   [[nodiscard]] Violation describe() noexcept;
   [[nodiscard]] int lower_link(const ArmPair& pair) const noexcept;
   void certify(Certificate& certificate) const noexcept;

@@ -34,6 +34,16 @@ TEST(CcdCheck, CountsTouchingAsOverlap) {
   EXPECT_TRUE(may_overlap(made(Sphere3{{0, 0, 0}, 1.0}), made(Sphere3{{0, 2, 0}, 1.0}), 0.0));
 }
 
+// Their centers give no direction to begin with.
+TEST(CcdCheck, SeesThatConcentricShapesOverlap) {
+  const Convex3 cube = cube_at({3, 2, 1});
+  EXPECT_TRUE(may_overlap(cube, cube, 0.0));
+  EXPECT_TRUE(may_overlap(cube, Capsule3{{3, 2, 0}, {3, 2, 2}, 0.1}, 0.0));
+  const Convex3 ball = made(Sphere3{{3, 2, 1}, 1.0});
+  EXPECT_TRUE(may_overlap(ball, ball, 0.0));
+  EXPECT_TRUE(may_overlap(ball, cube, 0.0));
+}
+
 TEST(CcdCheck, CountsADegenerateSearchAsOverlap) {
   // They touch; grown by the pad, libccd's simplex gets the same point twice and it answers 0.
   EXPECT_TRUE(

@@ -187,6 +187,30 @@ TEST_F(VerifyArm, AsksForASecondOpinion) {
   EXPECT_NEAR(found.amount, 1e-4, 1e-6);
 }
 
+// The tip stops there; nowhere else is it as near.
+TEST_F(VerifyArm, AsksForASecondOpinionAtTheLastWaypoint) {
+  ASSERT_EQ(world_.try_add(Sphere3{{2.05 + 1e-4 + 5e-7, 0.0, 0.0}, 0.2}), WorldStatus::kOk);
+  const Violation found = violation(bang_bang(Config::Zero(), {0, 0.3, 0, 0}));
+  EXPECT_EQ(found.kind, ViolationKind::kSecondOpinion);
+  EXPECT_EQ(found.i_link, 3);
+  EXPECT_EQ(found.i_obstacle, 0);
+  EXPECT_EQ(found.step, 19);
+  EXPECT_NEAR(found.t_s, 2.0, 1e-12);
+  EXPECT_NEAR(found.amount, 1e-4, 1e-6);
+}
+
+TEST_F(VerifyArm, AsksForASecondOpinionAboutTwoLinks) {
+  const ArmTrajectory<4> test = stay();
+  world_.build();
+  const VerifyProblem<Arm<4>> problem{test.start(), test.goal(), &world_, 1e-4, 1.35 - 5e-7};
+  const Violation found = verify(arm_, test.trajectory, problem).violation;
+  EXPECT_EQ(found.kind, ViolationKind::kSecondOpinion);
+  EXPECT_EQ(found.i_link, 3);
+  EXPECT_EQ(found.i_other_link, 0);
+  EXPECT_EQ(found.i_obstacle, kSelfObstacle);
+  EXPECT_NEAR(found.amount, 1.35, 1e-6);
+}
+
 // --- everything else
 
 TEST_F(VerifyArm, RejectsAnotherStartAndAnotherGoal) {
