@@ -9,10 +9,10 @@
 #include <array>
 #include <limits>
 
-#include "models/arm.h"
-#include "models/arm_clearance.h"
+#include "models/arm/arm.h"
+#include "models/arm/arm_clearance.h"
 #include "models/margin.h"
-#include "models/world3.h"
+#include "models/space/world3.h"
 #include "rt/annotations.h"
 
 namespace sopt {

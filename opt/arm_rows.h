@@ -1,13 +1,13 @@
 // The linearised clearances of one arm window [Leu22, Alg. 2]: per interior waypoint t and contact
 // within the activation radius the row
 //     gradient . theta_t >= required - distance + gradient . theta_ref,t
-// with the gradient by the envelope theorem (models/arm_clearance.h). Rows in order of time. When
-// they do not fit, those with the largest slack at the reference go first.
+// with the gradient by the envelope theorem (models/arm/arm_clearance.h). Rows in order of time.
+// When they do not fit, those with the largest slack at the reference go first.
 #pragma once
 
 #include "alloc/fixed_vector.h"
-#include "models/arm.h"
-#include "models/arm_clearance.h"
+#include "models/arm/arm.h"
+#include "models/arm/arm_clearance.h"
 #include "rt/annotations.h"
 
 namespace sopt {

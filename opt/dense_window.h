@@ -8,7 +8,7 @@
 
 #include <span>
 
-#include "models/convex2.h"
+#include "models/plane/convex2.h"
 #include "opt/qp/active_set_qp.h"
 #include "opt/qp/dense_rows.h"
 #include "opt/qp/point_rows.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/arm_clearance.h"
+#include "models/arm/arm_clearance.h"
 
 namespace sopt {
 namespace {

@@ -3,9 +3,9 @@
 // is itself closer.
 #pragma once
 
-#include "models/arm.h"
+#include "models/arm/arm.h"
 #include "models/margin.h"
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "models/trajectory.h"
 #include "rt/annotations.h"
 

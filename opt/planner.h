@@ -12,10 +12,10 @@
 
 #include "alloc/arena.h"
 #include "models/config.h"
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "models/trajectory.h"
 #include "opt/segmented_optimizer.h"
-#include "opt/verify.h"
+#include "opt/verify/verify.h"
 #include "rt/clock.h"
 #include "rt/executor.h"
 #include "sampler/sampler.h"

@@ -4,7 +4,7 @@
 // scales time instead (opt/time_scaling.h).
 #pragma once
 
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "models/trajectory.h"
 #include "rt/annotations.h"
 

@@ -7,9 +7,9 @@
 // Deviation: the paper starts from u = 0 with states from the path.
 #pragma once
 
-#include "models/arm.h"
+#include "models/arm/arm.h"
 #include "models/config.h"
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "models/trajectory.h"
 #include "rt/annotations.h"
 

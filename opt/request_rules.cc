@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "models/arm_clearance.h"
+#include "models/arm/arm_clearance.h"
 
 namespace sopt {
 namespace {

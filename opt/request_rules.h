@@ -5,13 +5,12 @@
 // rad.
 #pragma once
 
-#include "models/arm.h"
-#include "models/arm_motion.h"
+#include "models/arm/arm.h"
+#include "models/arm/arm_motion.h"
 #include "models/config.h"
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "models/trajectory.h"
 #include "models/world_status.h"
-#include "opt/verify.h"
 #include "rt/annotations.h"
 
 namespace sopt {

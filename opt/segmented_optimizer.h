@@ -18,10 +18,10 @@
 #include <cstdint>
 #include <span>
 
-#include "models/arm.h"
+#include "models/arm/arm.h"
 #include "models/config.h"
 #include "models/margin.h"
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "models/trajectory.h"
 #include "opt/arm_window.h"
 #include "opt/splits.h"

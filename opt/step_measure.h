@@ -5,8 +5,8 @@
 // depends on its own two states alone, so the windows' costs add up to f.
 #pragma once
 
-#include "models/arm.h"
-#include "models/point2.h"
+#include "models/arm/arm.h"
+#include "models/plane/point2.h"
 #include "rt/annotations.h"
 
 namespace sopt {

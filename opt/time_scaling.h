@@ -9,8 +9,8 @@
 // Only for robots at rest at both ends among obstacles that do not move.
 #pragma once
 
-#include "models/arm.h"
-#include "models/point2.h"
+#include "models/arm/arm.h"
+#include "models/plane/point2.h"
 #include "models/trajectory.h"
 #include "rt/annotations.h"
 

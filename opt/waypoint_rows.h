@@ -12,7 +12,7 @@
 
 #include "models/config.h"
 #include "models/margin.h"
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "opt/qp/point_rows.h"
 #include "opt/splits.h"
 #include "rt/annotations.h"

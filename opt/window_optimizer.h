@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "models/config.h"
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "opt/dense_window.h"
 #include "opt/obstacle_rows.h"
 #include "opt/qp/active_set_qp.h"

@@ -13,7 +13,7 @@
 #include <cstdint>
 
 #include "alloc/fixed_vector.h"
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "models/trajectory.h"
 #include "rt/deadline.h"
 #include "sampler/motion_checker.h"

@@ -8,8 +8,8 @@
 // queue entries.
 #pragma once
 
-#include "models/arm.h"
-#include "models/point2.h"
+#include "models/arm/arm.h"
+#include "models/plane/point2.h"
 #include "models/trajectory.h"
 #include "rt/deadline.h"
 #include "sampler/motion_checker.h"

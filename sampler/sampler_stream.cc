@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "sampler/tuning.h"
 
 namespace sopt {

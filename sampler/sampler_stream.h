@@ -11,9 +11,9 @@
 #include <cstdint>
 #include <limits>
 
-#include "models/arm.h"
+#include "models/arm/arm.h"
 #include "models/config.h"
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "models/trajectory.h"
 #include "rt/deadline.h"
 #include "sampler/motion_checker.h"

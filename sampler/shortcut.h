@@ -6,8 +6,8 @@
 // kMaxSkip n checks for a path of n vertices.
 #pragma once
 
-#include "models/arm.h"
-#include "models/point2.h"
+#include "models/arm/arm.h"
+#include "models/plane/point2.h"
 #include "models/trajectory.h"
 #include "rt/deadline.h"
 #include "sampler/motion_checker.h"

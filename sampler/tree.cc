@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "models/arm.h"
-#include "models/point2.h"
+#include "models/arm/arm.h"
+#include "models/plane/point2.h"
 
 namespace sopt {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "models/arm.h"
-#include "models/point2.h"
+#include "models/arm/arm.h"
+#include "models/plane/point2.h"
 
 namespace sopt {
 

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "opt/verify.h"
+#include "opt/verify/verify.h"
 #include "tools/cli/option_checks.h"
 #include "tools/io/json_fields.h"
 #include "tools/io/json_text.h"

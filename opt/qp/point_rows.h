@@ -12,7 +12,7 @@
 #include <span>
 
 #include "alloc/fixed_vector.h"
-#include "models/convex2.h"
+#include "models/plane/convex2.h"
 #include "models/simd.h"
 #include "rt/annotations.h"
 

@@ -3,8 +3,8 @@
 
 #include "alloc/arena.h"
 #include "alloc/memory_block.h"
-#include "models/point2.h"
-#include "models/world2.h"
+#include "models/plane/point2.h"
+#include "models/plane/world2.h"
 #include "opt/planner.h"
 #include "rt/executor.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "models/arm_presets.h"
+#include "models/arm/arm_presets.h"
 #include "opt/segmented_optimizer.h"
 #include "opt/time_scaling.h"
 #include "tests/support/arm_segment.h"

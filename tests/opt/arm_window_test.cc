@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "models/arm_presets.h"
+#include "models/arm/arm_presets.h"
 #include "tests/support/arm_segment.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/test_problem.h"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "opt/planner.h"
-#include "opt/verify.h"
+#include "opt/verify/verify.h"
 #include "tests/support/planner_fixture.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/test_problem.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "opt/verify.h"
+#include "opt/verify/verify.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/test_problem.h"
 #include "tests/support/test_trajectory.h"

@@ -2,8 +2,8 @@
 // that is said to be clear keeps the rule's floor and its links apart, found by samples refined
 // around the least distance; one that is said to be blocked does come closer than the rule asks for
 // somewhere; lanes never call clear what the exact check does not.
-#include "models/arm_clearance.h"
-#include "models/arm_motion.h"
+#include "models/arm/arm_clearance.h"
+#include "models/arm/arm_motion.h"
 #include "tests/support/property.h"
 #include "tests/support/test_arm.h"
 

@@ -7,7 +7,7 @@
 #include <initializer_list>
 #include <string>
 
-#include "opt/verify.h"
+#include "opt/verify/verify.h"
 #include "tests/support/arm_motion_oracle.h"
 #include "tests/support/arm_planner_fixture.h"
 #include "tests/support/property.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "models/arm_presets.h"
+#include "models/arm/arm_presets.h"
 #include "opt/planner.h"
 #include "tests/support/arm_planner_fixture.h"
 #include "tests/support/property.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "alloc/memory_block.h"
-#include "models/broad_phase2.h"
+#include "models/plane/broad_phase2.h"
 #include "tests/support/property.h"
 #include "tests/support/test_world.h"
 

@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "alloc/memory_block.h"
-#include "models/ccd_check.h"
-#include "models/clearance3.h"
-#include "models/gjk3.h"
-#include "models/sphere_lanes3.h"
-#include "models/world3.h"
+#include "models/space/ccd_check.h"
+#include "models/space/clearance3.h"
+#include "models/space/gjk3.h"
+#include "models/space/sphere_lanes3.h"
+#include "models/space/world3.h"
 #include "tests/support/oracle3.h"
 #include "tests/support/property.h"
 

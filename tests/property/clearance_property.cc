@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/clearance2.h"
+#include "models/plane/clearance2.h"
 #include "tests/support/property.h"
 #include "tests/support/test_world.h"
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "models/arm_presets.h"
-#include "opt/verify.h"
+#include "models/arm/arm_presets.h"
+#include "opt/verify/verify.h"
 #include "tests/support/arm_motion_oracle.h"
 #include "tests/support/arm_oracle.h"
 #include "tests/support/oracle3.h"

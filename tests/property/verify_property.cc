@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "opt/verify.h"
+#include "opt/verify/verify.h"
 #include "tests/support/property.h"
 #include "tests/support/test_trajectory.h"
 #include "tests/support/test_world.h"

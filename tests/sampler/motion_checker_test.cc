@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "tests/support/test_problem.h"
 #include "tests/support/test_world.h"
 

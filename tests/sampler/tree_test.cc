@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "models/arm.h"
-#include "models/point2.h"
+#include "models/arm/arm.h"
+#include "models/plane/point2.h"
 #include "tests/support/arm_oracle.h"
 #include "tests/support/test_problem.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/clearance3.h"
+#include "models/space/clearance3.h"
 
 namespace sopt::oracle {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "alloc/arena.h"
 #include "alloc/memory_block.h"
-#include "models/arm.h"
+#include "models/arm/arm.h"
 #include "models/trajectory.h"
 #include "models/world_status.h"
 #include "tests/support/oracle2.h"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "models/arm.h"
+#include "models/arm/arm.h"
 #include "tests/support/oracle2.h"
 
 namespace sopt::oracle {

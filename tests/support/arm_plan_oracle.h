@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "models/arm.h"
+#include "models/arm/arm.h"
+#include "models/space/world3.h"
 #include "models/trajectory.h"
-#include "models/world3.h"
 #include "tests/support/arm_oracle.h"
 
 namespace sopt::oracle {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "models/arm_pairs.h"
-#include "models/arm_presets.h"
+#include "models/arm/arm_pairs.h"
+#include "models/arm/arm_presets.h"
 #include "opt/planner.h"
 #include "rt/executor.h"
 #include "tests/support/arm_oracle.h"

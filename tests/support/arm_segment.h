@@ -12,10 +12,10 @@
 
 #include "alloc/arena.h"
 #include "alloc/memory_block.h"
-#include "models/arm.h"
-#include "models/clearance3.h"
+#include "models/arm/arm.h"
+#include "models/space/clearance3.h"
+#include "models/space/world3.h"
 #include "models/trajectory.h"
-#include "models/world3.h"
 #include "opt/reference.h"
 #include "tests/support/arm_oracle.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "models/margin.h"
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "tests/support/oracle2.h"
 
 namespace sopt::oracle {

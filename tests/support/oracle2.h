@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
-#include "models/convex2.h"
-#include "models/world2.h"
+#include "models/plane/convex2.h"
+#include "models/plane/world2.h"
 
 namespace sopt::oracle {
 

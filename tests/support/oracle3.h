@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "models/shape3.h"
-#include "models/world3.h"
+#include "models/space/shape3.h"
+#include "models/space/world3.h"
 #include "tests/support/oracle2.h"
 
 namespace sopt::oracle {

@@ -7,10 +7,10 @@
 
 #include "alloc/arena.h"
 #include "alloc/memory_block.h"
-#include "models/arm.h"
-#include "models/arm_presets.h"
-#include "models/clearance3.h"
-#include "models/world3.h"
+#include "models/arm/arm.h"
+#include "models/arm/arm_presets.h"
+#include "models/space/clearance3.h"
+#include "models/space/world3.h"
 #include "tests/support/arm_oracle.h"
 #include "tests/support/oracle3.h"
 

@@ -12,7 +12,7 @@
 #include "alloc/arena.h"
 #include "alloc/memory_block.h"
 #include "models/margin.h"
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "models/trajectory.h"
 #include "rt/executor.h"
 #include "tests/support/oracle2.h"

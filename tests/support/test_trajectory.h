@@ -6,7 +6,7 @@
 
 #include "alloc/arena.h"
 #include "alloc/memory_block.h"
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "models/trajectory.h"
 
 namespace sopt::oracle {

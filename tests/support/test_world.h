@@ -3,7 +3,7 @@
 
 #include "alloc/arena.h"
 #include "alloc/memory_block.h"
-#include "models/world2.h"
+#include "models/plane/world2.h"
 #include "tests/support/oracle2.h"
 
 namespace sopt::oracle {

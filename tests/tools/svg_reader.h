@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "models/convex2.h"
+#include "models/plane/convex2.h"
 
 namespace sopt {
 

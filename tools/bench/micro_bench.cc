@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "alloc/memory_block.h"
-#include "models/arm_clearance.h"
-#include "models/arm_lanes.h"
-#include "models/arm_motion.h"
-#include "models/clearance2.h"
-#include "models/point2.h"
-#include "models/world2.h"
+#include "models/arm/arm_clearance.h"
+#include "models/arm/arm_lanes.h"
+#include "models/arm/arm_motion.h"
+#include "models/plane/clearance2.h"
+#include "models/plane/point2.h"
+#include "models/plane/world2.h"
 #include "opt/qp/active_set_qp.h"
 #include "opt/qp/point_rows.h"
 #include "sampler/rng.h"

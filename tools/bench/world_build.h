@@ -1,8 +1,8 @@
 // How long a process takes that rebuilds its world: emptied, obstacles added, broad phase.
 #pragma once
 
-#include "models/world2.h"
-#include "models/world3.h"
+#include "models/plane/world2.h"
+#include "models/space/world3.h"
 #include "rt/clock.h"
 
 namespace sopt {

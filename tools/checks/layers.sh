@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Dependencies between folders go one way:
-#   rt -> alloc -> models -> {sampler, opt/qp -> opt core} -> opt/planner -> tools -> tests
+#   rt -> alloc -> models -> {sampler, opt/qp -> opt core, opt/verify} -> opt/planner -> tools -> tests
+# in models: {plane, space} -> arm, what lies above the rooms is used by all;
 # and in tools: io -> {cli -> qp, scenes} -> bench -> {tables, peers} -> main and the commands.
 # Every #include "..." names a file by its path from the project's root, and that file may be used
 # from the including file's layer. Prints each violation; exit code 1 when there is one.
@@ -11,23 +12,30 @@ cd "$root"
 
 layer_of() {
   case $1 in
+    models/*/*) echo "$(cut -d/ -f1,2 <<<"$1")" ;;
     opt/qp/*) echo qp ;;
+    opt/verify/*) echo verify ;;
     opt/planner.*) echo planner ;;
     tools/*/*) echo "$(cut -d/ -f1,2 <<<"$1")" ;;
     *) echo "${1%%/*}" ;;
   esac
 }
 
-libraries="rt alloc models sampler qp opt planner"
+models="rt alloc models models/plane models/space models/arm"
+libraries="$models sampler qp opt verify planner"
 tool_rooms="tools/io tools/cli tools/qp tools/scenes tools/bench tools/tables tools/peers"
 declare -A may_use=(
   [rt]="rt"
   [alloc]="rt alloc"
   [models]="rt alloc models"
-  [sampler]="rt alloc models sampler"
-  [qp]="rt alloc models qp"
-  [opt]="rt alloc models qp opt"
-  [planner]="rt alloc models sampler qp opt planner"
+  [models/plane]="rt alloc models models/plane"
+  [models/space]="rt alloc models models/space"
+  [models/arm]="rt alloc models models/space models/arm"
+  [sampler]="$models sampler"
+  [qp]="$models qp"
+  [opt]="$models qp opt"
+  [verify]="$models verify"
+  [planner]="$models sampler qp opt verify planner"
   [tools/io]="$libraries tools/io"
   [tools/cli]="$libraries tools/io tools/cli"
   [tools/qp]="$libraries tools/io tools/cli tools/qp"

@@ -15,7 +15,7 @@ cat >"$tree/opt/planner.cc" <<'CC'
 #include "opt/splits.h"
 #include "sampler/sampler.h"
 CC
-echo '#include "models/world2.h"' >"$tree/opt/splits.cc"
+echo '#include "models/plane/world2.h"' >"$tree/opt/splits.cc"
 printf '#include "tools/scene_file.h"\n#include "tests/guard.h"\n' >"$tree/tests/all_test.cc"
 
 if ! "$here/layers.sh" "$tree" >"$tree/log"; then
@@ -33,7 +33,7 @@ expect_refused() {  # file, include line
   rm "$tree/$1"
 }
 
-expect_refused rt/up.h '#include "models/world2.h"'
+expect_refused rt/up.h '#include "models/plane/world2.h"'
 expect_refused models/up.h '#  include "sampler/sampler.h"'
 expect_refused sampler/across.cc '#include "opt/splits.h"'
 expect_refused opt/across.cc '#include "sampler/sampler.h"'

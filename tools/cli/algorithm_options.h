@@ -7,7 +7,7 @@
 #include <string>
 
 #include "models/config.h"
-#include "models/point2.h"
+#include "models/plane/point2.h"
 
 namespace sopt {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/clearance3.h"
+#include "models/space/clearance3.h"
 #include "tools/io/arm_view.h"
 #include "tools/io/json_fields.h"
 #include "tools/io/picture_style.h"

@@ -14,8 +14,8 @@
 
 #include <variant>
 
-#include "models/arm.h"
-#include "models/world3.h"
+#include "models/arm/arm.h"
+#include "models/space/world3.h"
 #include "tools/io/scene_fields.h"
 #include "tools/io/scene_file.h"
 

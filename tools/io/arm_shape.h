@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "models/arm.h"
-#include "models/pose3.h"
+#include "models/arm/arm.h"
+#include "models/space/pose3.h"
 
 namespace sopt {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "models/clearance3.h"
+#include "models/space/clearance3.h"
 #include "tools/io/space_page.h"
 
 namespace sopt {

@@ -7,7 +7,7 @@
 
 #include <span>
 
-#include "models/shape3.h"
+#include "models/space/shape3.h"
 
 namespace sopt {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "models/shape3.h"
+#include "models/space/shape3.h"
 
 namespace sopt {
 

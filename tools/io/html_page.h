@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "models/convex2.h"
-#include "models/shape3.h"
+#include "models/plane/convex2.h"
+#include "models/space/shape3.h"
 
 namespace sopt {
 

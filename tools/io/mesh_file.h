@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "models/shape3.h"
+#include "models/space/shape3.h"
 
 namespace sopt {
 

@@ -1,6 +1,6 @@
 #include "tools/io/named_presets.h"
 
-#include "models/arm_presets.h"
+#include "models/arm/arm_presets.h"
 
 namespace sopt {
 namespace {

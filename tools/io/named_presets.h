@@ -1,4 +1,4 @@
-// The arms of models/arm_presets.h by the names that files and the command line use.
+// The arms of models/arm/arm_presets.h by the names that files and the command line use.
 #pragma once
 
 #include <optional>

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "models/arm_clearance.h"
+#include "models/arm/arm_clearance.h"
 #include "tools/io/arm_shape.h"
 #include "tools/io/json_fields.h"
 #include "tools/io/plan_file.h"

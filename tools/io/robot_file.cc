@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "models/config.h"
-#include "models/pose3.h"
+#include "models/space/pose3.h"
 #include "tools/io/input_error.h"
 #include "tools/io/json_fields.h"
 #include "tools/io/scene_fields.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
-#include "models/arm_pairs.h"
-#include "models/pose3.h"
+#include "models/arm/arm_pairs.h"
+#include "models/space/pose3.h"
 #include "tools/io/input_error.h"
 #include "tools/io/json_fields.h"
 

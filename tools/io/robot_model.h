@@ -3,9 +3,9 @@
 // fixed and locked joints go into the origins of the next free joint, links that hang rigidly on a
 // moving link (hands, fingers) give it their capsules. Joints that are neither free nor locked stay
 // at 0, or at their lower limit where 0 is outside.
-// Self-collision keeps the model's own links apart as bodies (models/arm.h), since links that are
-// rigidly joined can have different partners; those with the same partners become one body. Without
-// pairs in the model: as models/arm_pairs.h says.
+// Self-collision keeps the model's own links apart as bodies (models/arm/arm.h), since links that
+// are rigidly joined can have different partners; those with the same partners become one body.
+// Without pairs in the model: as models/arm/arm_pairs.h says.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "models/arm.h"
+#include "models/arm/arm.h"
 
 namespace sopt {
 
@@ -50,8 +50,8 @@ struct RobotModel {
 };
 
 // The farthest an arm may stand from the origin, and its first free joint from the root link. The
-// pads of motion checks grow with it (models/arm_lanes.h): a plan takes 4 % longer at 100 m, 1.8
-// times as long at 1 km, 580 times at 10 km.
+// pads of motion checks grow with it (models/arm/arm_lanes.h): a plan takes 4 % longer at 100
+// m, 1.8 times as long at 1 km, 580 times at 10 km.
 inline constexpr double kMaxBase_m = 100.0;
 
 // Which joints move, in the order of the arm's configuration, and where others are locked.

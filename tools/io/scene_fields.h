@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "models/config.h"
-#include "models/shape3.h"
+#include "models/space/shape3.h"
 #include "tools/io/json_fields.h"
 
 namespace sopt {

@@ -14,9 +14,9 @@
 
 #include "alloc/memory_block.h"
 #include "models/config.h"
-#include "models/point2.h"
+#include "models/plane/point2.h"
+#include "models/plane/world2.h"
 #include "models/trajectory.h"
-#include "models/world2.h"
 
 namespace sopt {
 

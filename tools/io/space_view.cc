@@ -7,7 +7,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "models/clearance3.h"
+#include "models/space/clearance3.h"
 
 namespace sopt {
 namespace {

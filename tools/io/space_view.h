@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "models/convex2.h"
-#include "models/shape3.h"
+#include "models/plane/convex2.h"
+#include "models/space/shape3.h"
 
 namespace sopt {
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "alloc/memory_block.h"
-#include "models/world3.h"
+#include "models/space/world3.h"
 #include "tools/io/json_fields.h"
 
 namespace sopt {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "models/convex2.h"
+#include "models/plane/convex2.h"
 
 namespace sopt {
 

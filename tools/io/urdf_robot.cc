@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "models/config.h"
-#include "models/pose3.h"
+#include "models/space/pose3.h"
 #include "tools/io/input_error.h"
 #include "tools/io/input_text.h"
 #include "tools/io/json_fields.h"

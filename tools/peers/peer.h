@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "models/arm_clearance.h"
+#include "models/arm/arm_clearance.h"
 #include "models/margin.h"
 #include "models/trajectory.h"
 #include "rt/clock.h"

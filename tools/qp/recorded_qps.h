@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "models/point2.h"
+#include "models/plane/point2.h"
 #include "opt/splits.h"
 #include "tools/io/scene_file.h"
 #include "tools/qp/qp_families.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "models/clearance3.h"
+#include "models/space/clearance3.h"
 #include "sampler/rng.h"
 
 namespace sopt {

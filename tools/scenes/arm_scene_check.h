@@ -5,8 +5,8 @@
 
 #include <cstdint>
 
-#include "models/arm.h"
-#include "models/world3.h"
+#include "models/arm/arm.h"
+#include "models/space/world3.h"
 
 namespace sopt {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include "models/arm_presets.h"
+#include "models/arm/arm_presets.h"
 #include "sampler/rng.h"
 #include "tools/io/arm_scene.h"
 #include "tools/io/space_world.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "models/arm.h"
+#include "models/arm/arm.h"
 
 namespace sopt {
 namespace {

@@ -7,8 +7,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "models/arm_presets.h"
-#include "models/pose3.h"
+#include "models/arm/arm_presets.h"
+#include "models/space/pose3.h"
 #include "tests/tools/temporary_folder.h"
 #include "tools/io/input_error.h"
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "alloc/memory_block.h"
-#include "models/world2.h"
-#include "models/world3.h"
+#include "models/plane/world2.h"
+#include "models/space/world3.h"
 #include "tests/tools/html_scenes.h"
 
 namespace sopt {

@@ -3,7 +3,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "opt/verify.h"
+#include "opt/verify/verify.h"
 #include "rt/executor.h"
 #include "tests/tools/temporary_folder.h"
 #include "tools/io/input_error.h"

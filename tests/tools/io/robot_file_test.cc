@@ -5,9 +5,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "models/arm_pairs.h"
-#include "models/arm_presets.h"
-#include "models/pose3.h"
+#include "models/arm/arm_pairs.h"
+#include "models/arm/arm_presets.h"
+#include "models/space/pose3.h"
 #include "tests/tools/temporary_folder.h"
 #include "tools/io/input_error.h"
 #include "tools/io/json_text.h"

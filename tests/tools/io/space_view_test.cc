@@ -10,7 +10,7 @@
 #include <optional>
 #include <random>
 
-#include "models/clearance3.h"
+#include "models/space/clearance3.h"
 
 namespace sopt {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "models/arm_presets.h"
+#include "models/arm/arm_presets.h"
 #include "tools/io/arm_scene.h"
 #include "tools/scenes/arm_scene_check.h"
 #include "tools/scenes/arm_scene_generator.h"

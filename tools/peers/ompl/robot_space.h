@@ -8,8 +8,8 @@
 #include <memory>
 #include <utility>
 
-#include "models/arm.h"
-#include "models/point2.h"
+#include "models/arm/arm.h"
+#include "models/plane/point2.h"
 #include "tools/peers/peer.h"
 
 namespace sopt {
