@@ -265,6 +265,39 @@ TEST_F(ArmWindowTest, GoesFromHardToSoftToKeepingTheWindow) {
   EXPECT_GT(num_soft, 0);
 }
 
+// The way rests at a limit for one step. Rows and bounds hold at waypoints only: the QP's solution
+// is at the limit at both of them and swings past it in between, which only the check can see.
+TEST_F(ArmWindowTest, TakesNoSolutionThatPassesALimitBetweenWaypoints) {
+  test_.world.reset();
+  for (const int j : {0, 1, 3, 4}) {  // the third folds the arm into itself
+    for (const double side : {-1.0, 1.0}) {
+      const double limit = side * (side > 0.0 ? robot_.upper()[j] : robot_.lower()[j]);
+      const Config push = side * robot_.a_max()[j] * Config::Unit(j);
+      States back = {Robot::State::Unit(j) * (side * limit)};
+      for (const double share : {0.3, 0.5}) {
+        back.push_back(Robot::step(back.back(), -share * push, kDt_s));
+      }
+      reference_.assign(back.rbegin(), back.rend());
+      for (auto& z : reference_) z.tail<kDof>() *= -1.0;
+      reference_.insert(reference_.end(), back.begin(), back.end());
+      const auto excess = [&] {
+        return oracle::examine(robot_, test_.world, states_, kDt_s, 16).limit_excess;
+      };
+      states_ = reference_;
+      EXPECT_LE(excess(), 1e-12);
+      SweepProblem<Robot> problem = this->problem();
+      problem.accept = false;
+      (void)optimizer_.optimize(problem, {0, horizon()}, Deadline());
+      for (const auto& z : states_) EXPECT_LE(side * z[j], limit + 1e-8);
+      EXPECT_GT(excess(), 1e-4);
+      std::copy(reference_.begin(), reference_.end(), states_.begin());
+      problem.accept = true;
+      (void)optimizer_.optimize(problem, {0, horizon()}, Deadline());
+      EXPECT_LE(excess(), 1e-12) << "joint " << j << ", side " << side;
+    }
+  }
+}
+
 TEST_F(ArmWindowTest, GivesTheSameBytesTwice) {
   (void)optimize(whole());
   const States first = states_;

@@ -4,6 +4,7 @@
 // somewhere; lanes never call clear what the exact check does not.
 #include "models/arm/arm_clearance.h"
 #include "models/arm/arm_motion.h"
+#include "tests/support/arm_cases.h"
 #include "tests/support/property.h"
 #include "tests/support/test_arm.h"
 
@@ -99,18 +100,7 @@ std::string check_arm(Random& random, CaseReport& report) {
 }
 
 std::string check(Random& random, CaseReport& report) {
-  switch (4 + random.index(5)) {
-    case 4:
-      return check_arm<4>(random, report);
-    case 5:
-      return check_arm<5>(random, report);
-    case 6:
-      return check_arm<6>(random, report);
-    case 7:
-      return check_arm<7>(random, report);
-    default:
-      return check_arm<8>(random, report);
-  }
+  return with_joints(4 + random.index(5), [&](auto n) { return check_arm<n>(random, report); });
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "opt/verify/verify.h"
+#include "tests/support/arm_cases.h"
 #include "tests/support/arm_motion_oracle.h"
 #include "tests/support/arm_planner_fixture.h"
 #include "tests/support/property.h"
@@ -199,8 +200,7 @@ void spoil_self_clearance(const Arm<N>& arm, Mutation<N>& mutation, CaseReport& 
 
 template <int N>
 std::string check_chain(Random& random, CaseReport& report) {
-  static RandomArm<N> drawn;
-  report.expect("a valid chain is taken", draw_chain(random, drawn));
+  const RandomArm<N>& drawn = random_chain<N>(random, report);
   const Arm<N>& arm = drawn.arm;
   TestWorld3 test({16, 16});
   scatter_obstacles(random, arm, random.index(6), test.world);
@@ -211,13 +211,7 @@ std::string check_chain(Random& random, CaseReport& report) {
   request.options.num_samples = 1000;
   request.options.num_batches = 1;
   for (auto* end : {&request.start, &request.goal}) {
-    for (int i = 0; i < 100; ++i) {
-      *end = random_configuration(random, arm);
-      if (least_excess(arm, test.world, *end, {0.0, 0.0, 1e-3}) > 0.0 &&
-          least_self_distance(arm, *end) > 1e-3) {
-        break;
-      }
-    }
+    draw_free(random, arm, test.world, {0.0, 0.0, 1e-3}, 1e-3, 100, *end);
   }
   TestArmPlanner<N> test_planner(arm);
   const PlanResult<Arm<N>> result = test_planner.planner.plan(request);
@@ -238,18 +232,7 @@ std::string check_chain(Random& random, CaseReport& report) {
 }
 
 std::string check_case(Random& random, CaseReport& report) {
-  switch (random.index(5)) {
-    case 0:
-      return check_chain<4>(random, report);
-    case 1:
-      return check_chain<5>(random, report);
-    case 2:
-      return check_chain<6>(random, report);
-    case 3:
-      return check_chain<7>(random, report);
-    default:
-      return check_chain<8>(random, report);
-  }
+  return with_joints(4 + random.index(5), [&](auto n) { return check_chain<n>(random, report); });
 }
 
 }  // namespace

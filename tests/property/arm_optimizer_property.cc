@@ -9,6 +9,7 @@
 #include "opt/reference.h"
 #include "opt/segmented_optimizer.h"
 #include "opt/time_scaling.h"
+#include "tests/support/arm_cases.h"
 #include "tests/support/arm_planner_fixture.h"
 #include "tests/support/arm_segment.h"
 #include "tests/support/property.h"
@@ -57,16 +58,11 @@ bool draw_reference(Random& random, const Arm<N>& arm, PlanRequest<Arm<N>>& requ
   const ClearanceRule rule{0.0, 1.0, 2e-3};
   const bool hugs_limits = random.chance(0.4);
   for (auto* end : {&request.start, &request.goal}) {
-    for (int i = 0; i < 100; ++i) {
-      *end = random_configuration(random, arm);
+    draw_free(random, arm, *request.world, rule, 1e-3, 100, *end, [&](auto& q) {
       for (int j = 0; j < N && hugs_limits; ++j) {
-        if (!arm.is_continuous(j) && random.chance(0.7)) (*end)[j] = arm.lower()[j];
+        if (!arm.is_continuous(j) && random.chance(0.7)) q[j] = arm.lower()[j];
       }
-      if (least_excess(arm, *request.world, *end, rule) > 0.0 &&
-          least_self_distance(arm, *end) > 1e-3) {
-        break;
-      }
-    }
+    });
   }
   PlanRequest<Arm<N>> plain = request;
   plain.options.max_iterations = 0;
@@ -126,29 +122,9 @@ std::string check_arm(Random& random, const Arm<N>& arm, CaseReport& report) {
          " obstacles, margin " + std::to_string(request.options.margin_m);
 }
 
-template <int N>
-std::string check_chain(Random& random, CaseReport& report) {
-  static RandomArm<N> drawn;
-  report.expect("a valid chain is taken", draw_chain(random, drawn));
-  return check_arm(random, drawn.arm, report);
-}
-
 std::string check_case(Random& random, CaseReport& report) {
-  static const Arm<5> kPresets[] = {lr_mate_200id_7l(), so_101(), widowx_250(), xarm5()};
-  switch (random.index(6)) {
-    case 0:
-      return check_chain<4>(random, report);
-    case 1:
-      return check_chain<5>(random, report);
-    case 2:
-      return check_chain<6>(random, report);
-    case 3:
-      return check_chain<7>(random, report);
-    case 4:
-      return check_chain<8>(random, report);
-    default:
-      return check_arm(random, kPresets[random.index(4)], report);
-  }
+  return with_chain_or_preset(random, report, 1,
+                              [&](const auto& arm) { return check_arm(random, arm, report); });
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "models/arm/arm_presets.h"
 #include "opt/planner.h"
+#include "tests/support/arm_cases.h"
 #include "tests/support/arm_planner_fixture.h"
 #include "tests/support/property.h"
 #include "tests/support/test_arm.h"
@@ -61,12 +61,8 @@ PlanOptions draw_options(Random& random) {
 // Free most of the time.
 template <int N>
 typename Arm<N>::Config draw_end(Random& random, const Arm<N>& arm, const World3& world) {
-  typename Arm<N>::Config q = random_configuration(random, arm);
-  for (int i = 0; i < 200; ++i) {
-    if (least_excess(arm, world, q, {0.0, 0.0, 2e-4}) > 0.0 && least_self_distance(arm, q) > 2e-4)
-      break;
-    q = random_configuration(random, arm);
-  }
+  typename Arm<N>::Config q;
+  draw_free(random, arm, world, {0.0, 0.0, 2e-4}, 2e-4, 201, q);
   if (random.chance(0.1)) {  // against a limit
     const int j = random.index(N);
     if (!arm.is_continuous(j)) q[j] = random.chance(0.5) ? arm.lower()[j] : arm.upper()[j];
@@ -168,29 +164,9 @@ std::string check_request(Random& random, const Arm<N>& arm, CaseReport& report)
          std::to_string(request.options.min_clearance_m);
 }
 
-template <int N>
-std::string check_chain(Random& random, CaseReport& report) {
-  static RandomArm<N> drawn;
-  report.expect("a valid chain is taken", draw_chain(random, drawn));
-  return check_request(random, drawn.arm, report);
-}
-
 std::string check_case(Random& random, CaseReport& report) {
-  static const Arm<5> kPresets[] = {lr_mate_200id_7l(), so_101(), widowx_250(), xarm5()};
-  switch (random.index(7)) {
-    case 0:
-      return check_chain<4>(random, report);
-    case 1:
-      return check_chain<5>(random, report);
-    case 2:
-      return check_chain<6>(random, report);
-    case 3:
-      return check_chain<7>(random, report);
-    case 4:
-      return check_chain<8>(random, report);
-    default:
-      return check_request(random, kPresets[random.index(4)], report);
-  }
+  return with_chain_or_preset(random, report, 2,
+                              [&](const auto& arm) { return check_request(random, arm, report); });
 }
 
 }  // namespace

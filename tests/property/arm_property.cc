@@ -3,6 +3,7 @@
 // wrap.
 #include <algorithm>
 
+#include "tests/support/arm_cases.h"
 #include "tests/support/arm_oracle.h"
 #include "tests/support/property.h"
 
@@ -140,18 +141,7 @@ std::string check_arm(Random& random, CaseReport& report) {
 }
 
 std::string check_case(Random& random, CaseReport& report) {
-  switch (random.index(5)) {
-    case 0:
-      return check_arm<4>(random, report);
-    case 1:
-      return check_arm<5>(random, report);
-    case 2:
-      return check_arm<6>(random, report);
-    case 3:
-      return check_arm<7>(random, report);
-    default:
-      return check_arm<8>(random, report);
-  }
+  return with_joints(4 + random.index(5), [&](auto n) { return check_arm<n>(random, report); });
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "opt/arm_window.h"
+#include "tests/support/arm_cases.h"
 #include "tests/support/arm_segment.h"
 #include "tests/support/property.h"
 #include "tests/support/test_problem.h"
@@ -74,24 +75,10 @@ void check_window(Random& random, CaseReport& report) {
 }
 
 std::string check(Random& random, CaseReport& report) {
-  const int num_joints = 4 + random.index(5);
-  switch (num_joints) {
-    case 4:
-      check_window<4>(random, report);
-      break;
-    case 5:
-      check_window<5>(random, report);
-      break;
-    case 6:
-      check_window<6>(random, report);
-      break;
-    case 7:
-      check_window<7>(random, report);
-      break;
-    default:
-      check_window<8>(random, report);
-  }
-  return "an arm of " + std::to_string(num_joints) + " joints";
+  return with_joints(4 + random.index(5), [&](auto n) {
+    check_window<n>(random, report);
+    return "an arm of " + std::to_string(n()) + " joints";
+  });
 }
 
 }  // namespace

@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "alloc/memory_block.h"
 #include "models/space/ccd_check.h"
 #include "models/space/clearance3.h"
 #include "models/space/gjk3.h"
 #include "models/space/sphere_lanes3.h"
-#include "models/space/world3.h"
 #include "tests/support/oracle3.h"
 #include "tests/support/property.h"
+#include "tests/support/test_arm.h"
 
 namespace {
 
@@ -133,10 +132,8 @@ void check_ccd(Random& random, const Case& c, double distance_m, CaseReport& rep
 
 // Spheres about where the obstacle's required clearance begins, against the exact answer.
 void check_lanes(Random& random, const Case& c, CaseReport& report) {
-  constexpr World3Capacity kOne{1, 1};
-  const MemoryBlock block(World3::required_bytes(kOne));
-  Arena arena(block);
-  World3 world(arena, kOne);
+  TestWorld3 test({1, 1});
+  World3& world = test.world;
   if (add_to(world, c.a) != WorldStatus::kOk) return report.fail("the world refuses a solid");
   world.build();
   const ClearanceRule rule{random.uniform(0.0, 0.1)};

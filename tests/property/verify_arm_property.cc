@@ -7,12 +7,11 @@
 #include <limits>
 #include <vector>
 
-#include "models/arm/arm_presets.h"
 #include "opt/verify/verify.h"
+#include "tests/support/arm_cases.h"
 #include "tests/support/arm_motion_oracle.h"
-#include "tests/support/arm_oracle.h"
-#include "tests/support/oracle3.h"
 #include "tests/support/property.h"
+#include "tests/support/test_arm.h"
 
 namespace {
 
@@ -159,11 +158,9 @@ template <int N>
 std::string check_arm(Random& random, const Arm<N>& arm, ArmTrajectory<N>& test,
                       CaseReport& report) {
   static constexpr double kMinClearances_m[] = {0.0, 1e-4, 0.01};
-  constexpr World3Capacity kCapacity{16, 16};
-  const MemoryBlock block(World3::required_bytes(kCapacity));
-  Arena arena(block);
-  World3 world(arena, kCapacity);
-  fill_world(random, arm, test.trajectory, world);
+  TestWorld3 scene({16, 16});
+  const World3& world = scene.world;
+  fill_world(random, arm, test.trajectory, scene.world);
   std::vector<const Convex3*> obstacles;
   for (int i = 0; i < world.num_obstacles(); ++i) obstacles.push_back(&world.obstacle(i));
   VerifyProblem<Arm<N>> problem{test.start(), test.goal(), &world,
@@ -213,28 +210,14 @@ std::string check_chain(Random& random, CaseReport& report) {
   return check_arm(random, drawn.arm, test, report);
 }
 
-std::string check_preset(Random& random, CaseReport& report) {
-  static const Arm<5> kPresets[] = {lr_mate_200id_7l(), so_101(), widowx_250(), xarm5()};
-  const Arm<5>& arm = kPresets[random.index(4)];
+std::string check_case(Random& random, CaseReport& report) {
+  const int num_joints = 4 + random.index(6);
+  if (num_joints <= 8) {
+    return with_joints(num_joints, [&](auto n) { return check_chain<n>(random, report); });
+  }
+  const Arm<5>& arm = random_preset(random);
   ArmTrajectory<5> test = random_motion(random, arm, 1 + random.index(40), 0.05);
   return check_arm(random, arm, test, report);
-}
-
-std::string check_case(Random& random, CaseReport& report) {
-  switch (random.index(6)) {
-    case 0:
-      return check_chain<4>(random, report);
-    case 1:
-      return check_chain<5>(random, report);
-    case 2:
-      return check_chain<6>(random, report);
-    case 3:
-      return check_chain<7>(random, report);
-    case 4:
-      return check_chain<8>(random, report);
-    default:
-      return check_preset(random, report);
-  }
 }
 
 }  // namespace

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
 #include "models/arm/arm.h"
+#include "models/arm/arm_pairs.h"
 #include "tests/support/oracle2.h"
+#include "tests/support/oracle3.h"
 
 namespace sopt::oracle {
 
@@ -45,12 +48,6 @@ template <int N>
 
 [[nodiscard]] inline Vec3 transform(const Mat4& frame, const Vec3& p) {
   return (frame * p.homogeneous()).head<3>();
-}
-
-[[nodiscard]] inline Vec3 random_vector(Random& random, double reach) {
-  const double x = random.uniform(-reach, reach);
-  const double y = random.uniform(-reach, reach);
-  return {x, y, random.uniform(-reach, reach)};
 }
 
 // Half of them along a coordinate axis.
@@ -102,6 +99,41 @@ void draw_arm(Random& random, RandomArm<N>& out) {
     out.capsules.push_back(capsule);
   }
   out.description.capsules = out.capsules;
+}
+
+// Links of one capsule, from joint to joint, that may collide when they are apart at home; joints
+// of all kinds about any axis. About 1.5 m long. False when it is refused.
+template <int N>
+[[nodiscard]] bool draw_chain(Random& random, RandomArm<N>& out) {
+  out.description = {};
+  if (random.chance(0.5)) out.description.X_WB = random_pose(random, 1.0);
+  out.capsules.clear();
+  for (int i = 0; i <= N; ++i) {
+    const Vec3 end = random.uniform(0.08, 2.0 / N) * Vec3::UnitZ();
+    out.capsules.push_back({i, Vec3::Zero(), end, random.uniform(0.02, 0.05)});
+    if (i == N) break;
+    ArmJoint& joint = out.description.joints[static_cast<std::size_t>(i)];
+    joint.origin = random_pose(random, 0.0);
+    joint.origin.position = end;
+    joint.axis = random_axis(random);
+    const int kind = random.index(6);
+    joint.kind = kind == 0   ? JointKind::kPrismatic
+                 : kind == 1 ? JointKind::kContinuous
+                             : JointKind::kRevolute;
+    const double reach = kind == 0 ? 0.2 : 3.0;
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    joint.lower = kind == 1 ? -kInfinity : random.uniform(-reach, -0.3 * reach);
+    joint.upper = kind == 1 ? kInfinity : random.uniform(0.3 * reach, reach);
+    joint.v_max = random.uniform(0.3, 3.0);
+    joint.a_max = random.uniform(1.0, 15.0);
+  }
+  out.description.capsules = out.capsules;
+  if (out.arm.reset(out.description) != ArmStatus::kOk) return false;
+  const LinkPairList pairs = find_pairs_apart(out.arm);
+  out.description.pairs = pairs.view();
+  const ArmStatus status = out.arm.reset(out.description);
+  out.description.pairs = {};
+  return status == ArmStatus::kOk;
 }
 
 template <int N>

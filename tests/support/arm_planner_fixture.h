@@ -1,5 +1,4 @@
-// A Planner<Arm<N>> with its memory, random chains that fold freely, and an independent check of
-// what a planner returns.
+// A Planner<Arm<N>> with its memory, and an independent check of what it returns.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -7,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "models/arm/arm_pairs.h"
 #include "models/arm/arm_presets.h"
 #include "opt/planner.h"
 #include "rt/executor.h"
@@ -68,41 +66,6 @@ void expect_valid(const Arm<N>& arm, const PlanRequest<Arm<N>>& request,
   EXPECT_NEAR(result.path_length, facts.length, 1e-9 * (1.0 + facts.length));
   EXPECT_LE(result.plan->certificate().min_clearance_m, facts.clearance_m + 1e-9);
   EXPECT_LE(result.plan->certificate().min_self_clearance_m, facts.self_clearance_m + 1e-9);
-}
-
-// Links of one capsule, from joint to joint, that may collide when they are apart at home; joints
-// of all kinds about any axis. About 1.5 m long. False when it is refused.
-template <int N>
-[[nodiscard]] bool draw_chain(Random& random, RandomArm<N>& out) {
-  out.description = {};
-  if (random.chance(0.5)) out.description.X_WB = random_pose(random, 1.0);
-  out.capsules.clear();
-  for (int i = 0; i <= N; ++i) {
-    const Vec3 end = random.uniform(0.08, 2.0 / N) * Vec3::UnitZ();
-    out.capsules.push_back({i, Vec3::Zero(), end, random.uniform(0.02, 0.05)});
-    if (i == N) break;
-    ArmJoint& joint = out.description.joints[static_cast<std::size_t>(i)];
-    joint.origin = random_pose(random, 0.0);
-    joint.origin.position = end;
-    joint.axis = random_axis(random);
-    const int kind = random.index(6);
-    joint.kind = kind == 0   ? JointKind::kPrismatic
-                 : kind == 1 ? JointKind::kContinuous
-                             : JointKind::kRevolute;
-    const double reach = kind == 0 ? 0.2 : 3.0;
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    joint.lower = kind == 1 ? -kInfinity : random.uniform(-reach, -0.3 * reach);
-    joint.upper = kind == 1 ? kInfinity : random.uniform(0.3 * reach, reach);
-    joint.v_max = random.uniform(0.3, 3.0);
-    joint.a_max = random.uniform(1.0, 15.0);
-  }
-  out.description.capsules = out.capsules;
-  if (out.arm.reset(out.description) != ArmStatus::kOk) return false;
-  const LinkPairList pairs = find_pairs_apart(out.arm);
-  out.description.pairs = pairs.view();
-  const ArmStatus status = out.arm.reset(out.description);
-  out.description.pairs = {};
-  return status == ArmStatus::kOk;
 }
 
 // The LR Mate turns past a pillar that its forearm does not pass stretched.

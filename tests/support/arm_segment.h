@@ -17,7 +17,7 @@
 #include "models/space/world3.h"
 #include "models/trajectory.h"
 #include "opt/reference.h"
-#include "tests/support/arm_oracle.h"
+#include "tests/support/test_arm.h"
 
 namespace sopt::oracle {
 
@@ -75,26 +75,6 @@ template <int N>
   return least;
 }
 
-// Least distance of links that may collide.
-template <int N>
-[[nodiscard]] double brute_self_clearance(const Arm<N>& arm, const typename Arm<N>::Config& q) {
-  ArmPose<N> pose;
-  arm.forward(q, pose);
-  double least = std::numeric_limits<double>::infinity();
-  for (const auto& pair : arm.self_collision_pairs()) {
-    const ArmBody& a = arm.body(pair.i_body_a);
-    const ArmBody& b = arm.body(pair.i_body_b);
-    for (int i = a.first; i < a.last; ++i) {
-      for (int k = b.first; k < b.last; ++k) {
-        least = std::min(
-            least, compute_clearance(to_convex(arm.capsule_W(pose, i)), arm.capsule_W(pose, k))
-                       .distance_m);
-      }
-    }
-  }
-  return least;
-}
-
 // Configuration at `share` of the step from z to z_next: the parabola.
 template <int N>
 [[nodiscard]] typename Arm<N>::Config between(const typename Arm<N>::State& z,
@@ -126,7 +106,7 @@ template <int N>
     for (int i = 0; i < samples; ++i) {
       const auto q = between<N>(z[t], z[t + 1], dt_s, static_cast<double>(i) / samples);
       facts.clearance_m = std::min(facts.clearance_m, brute_clearance(arm, world, q));
-      facts.self_clearance_m = std::min(facts.self_clearance_m, brute_self_clearance(arm, q));
+      facts.self_clearance_m = std::min(facts.self_clearance_m, least_self_distance(arm, q));
       facts.limit_excess = std::max(
           {facts.limit_excess, (q - arm.upper()).maxCoeff(), (arm.lower() - q).maxCoeff()});
     }
@@ -154,7 +134,7 @@ template <int N>
     for (int k = 0; k <= 40; ++k) {
       const auto q = arm.interpolate(way[i], way[i + 1], k / 40.0);
       least = std::min(
-          least, between_links ? brute_self_clearance(arm, q) : brute_clearance(arm, world, q));
+          least, between_links ? least_self_distance(arm, q) : brute_clearance(arm, world, q));
     }
   }
   return least;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 
 #include "alloc/arena.h"
@@ -95,6 +96,22 @@ void scatter_obstacles(Random& random, const Arm<N>& arm, int num, World3& world
   world.build();
 }
 
+// The first of `max_tries` random configurations, each changed by `change`, that is clear by `rule`
+// and has its links `self_m` apart. False when none is: then q is the last.
+template <int N, class Change = std::identity>
+bool draw_free(Random& random, const Arm<N>& arm, const World3& world, const ClearanceRule& rule,
+               double self_m, int max_tries, typename Arm<N>::Config& q,
+               const Change& change = {}) {
+  for (int i = 0; i < max_tries; ++i) {
+    q = random_configuration(random, arm);
+    (void)change(q);
+    if (least_excess(arm, world, q, rule) > 0.0 && least_self_distance(arm, q) > self_m) {
+      return true;
+    }
+  }
+  return false;
+}
+
 // A request in such a scene: start and goal clear by `rule`, the tool more than 0.6 m apart, the
 // straight motion between them blocked. False when none was found.
 template <int N>
@@ -102,13 +119,7 @@ template <int N>
                                 const ClearanceRule& rule, typename Arm<N>::Config& start,
                                 typename Arm<N>::Config& goal) {
   const auto draw = [&](typename Arm<N>::Config& q) {
-    for (int i = 0; i < 200; ++i) {
-      q = random_configuration(random, arm);
-      if (least_excess(arm, world, q, rule) > 0.0 && least_self_distance(arm, q) > 1e-3) {
-        return true;
-      }
-    }
-    return false;
+    return draw_free(random, arm, world, rule, 1e-3, 200, q);
   };
   const auto tool = [&](const typename Arm<N>::Config& q) {
     ArmPose<N> pose;

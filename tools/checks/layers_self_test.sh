@@ -5,14 +5,16 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
 
-mkdir -p "$tree"/{rt,models,sampler,opt,tests} "$tree"/tools/{io,scenes,bench,attic}
-touch "$tree"/{rt/clock,models/world2,sampler/sampler,opt/splits,opt/planner,tools/scene_file}.h
+mkdir -p "$tree"/{rt,models/{plane,arm},sampler,opt/verify,tests} "$tree"/tools/{io,scenes,bench,attic}
+touch "$tree"/{rt/clock,models/plane/world2,models/arm/arm,sampler/sampler,tools/scene_file}.h
+touch "$tree"/opt/{splits,planner,verify/verify}.h
 touch "$tree"/tools/{io/text,bench/report}.h
 touch "$tree/tests/guard.h"
 cat >"$tree/opt/planner.cc" <<'CC'
 #include "opt/planner.h"
 
 #include "opt/splits.h"
+#include "opt/verify/verify.h"
 #include "sampler/sampler.h"
 CC
 echo '#include "models/plane/world2.h"' >"$tree/opt/splits.cc"
@@ -34,9 +36,13 @@ expect_refused() {  # file, include line
 }
 
 expect_refused rt/up.h '#include "models/plane/world2.h"'
+expect_refused models/room.h '#include "models/arm/arm.h"'
+expect_refused models/plane/across.h '#include "models/arm/arm.h"'
 expect_refused models/up.h '#  include "sampler/sampler.h"'
 expect_refused sampler/across.cc '#include "opt/splits.h"'
 expect_refused opt/across.cc '#include "sampler/sampler.h"'
+expect_refused opt/to_verify.cc '#include "opt/verify/verify.h"'
+expect_refused opt/verify/to_splits.cc '#include "opt/splits.h"'
 expect_refused opt/to_planner.cc '#include "opt/planner.h"'
 expect_refused opt/to_tools.cc '#include "tools/scene_file.h"'
 expect_refused tools/io/up.cc '#include "tools/bench/report.h"'
