@@ -119,7 +119,7 @@ struct PlanOptions {
     options.speed_mps = 1.0;
     options.dt_s = 0.05;
     options.margin_m = 0.02;
-    options.num_batches = 16;  // the first ones give up early, see sampler/tuning.h
+    options.num_batches = 48;  // the first ones give up early, see sampler/tuning.h
     options.num_streams = 2;   // more cost more than the optimiser gains from them
     options.merge = MergeRule::kEager;
     options.steps_per_window = 160;  // one window is best as long as it fits (docs/segments.md)
