@@ -177,7 +177,8 @@ class MotionCheck {
   };
   [[nodiscard]] bool capsules_are_clear(int l, std::span<NearObstacle> obstacles) noexcept {
     if (obstacles.empty()) return true;
-    for (int k = arm_.first_capsule(l); k < arm_.first_capsule(l + 1); ++k) {
+    // Outer capsules first, too.
+    for (int k = arm_.first_capsule(l + 1) - 1; k >= arm_.first_capsule(l); --k) {
       const Spread own =
           spread_of(float_above(arm_.capsule_displacement_bound(k, abs_travel_)), room_m_);
       for (const CoverSphere& s : arm_.cover(k)) {
