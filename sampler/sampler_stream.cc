@@ -38,7 +38,7 @@ void SamplerStream<Robot>::reset(const StreamProblem<Robot>& problem,
   const auto box = problem.robot->sampling_box(*problem.world, problem.profile.rule);
   box_lower_ = box.lower;
   box_size_ = (box.upper - box.lower).cwiseMax(0.0);
-  range_ = kRangeShare * box_size_.norm();
+  range_ = SamplerTuning<Robot>::kRangeShare * box_size_.norm();
   const double d = Robot::kDof;
   radius_scale_ =
       2.0 * std::pow((1.0 + 1.0 / d) * box_size_.prod() / unit_ball_volume(Robot::kDof), 1.0 / d);

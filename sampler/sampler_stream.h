@@ -78,8 +78,6 @@ class SamplerStream {
   static constexpr int kMaxParentTries = 6;
   // Steps of one tree towards a new node of the other.
   static constexpr int kMaxConnectSteps = 64;
-  // Longest motion of one extension, as a share of the sampling box's diagonal.
-  static constexpr double kRangeShare = 0.2;
   // Deviation: of the radius that asymptotic optimality asks for, because shortening the paths is
   // cheaper than rewiring (docs/RESULTS.md).
   static constexpr double kRadiusShare = 0.5;

@@ -19,6 +19,8 @@ struct SamplerTuning<Point2> {
   // Samples per stream and round. A round is the unit after which streams are compared: longer
   // rounds let more streams finish and compete, shorter ones stop earlier.
   static constexpr int kRoundSamples = 128;
+  // Longest motion of one extension, as a share of the sampling box's diagonal.
+  static constexpr double kRangeShare = 0.2;
   // Deviation: shares of its length at which an extension is tried, RRT* tries one; among narrow
   // doors long motions are nearly always blocked.
   static constexpr std::array<double, 2> kExtensionShares = {1.0, 0.25};
@@ -36,6 +38,7 @@ struct SamplerTuning<Point2> {
 template <int N>
 struct SamplerTuning<Arm<N>> {
   static constexpr int kRoundSamples = 8;
+  static constexpr double kRangeShare = 0.15;
   static constexpr std::array<double, 2> kExtensionShares = {1.0, 0.25};
   static constexpr int kBlockedInARow = 16;
   static constexpr int kPatience = 128;
