@@ -35,10 +35,12 @@ double core_distance2(const Convex3& shape, const Vec3& offset) noexcept {
   return across * across + above * above;
 }
 
-// Exact. Where that is slow, only if one of the spheres that cover the capsule is near, too.
+// Exact. Where that is slow, only if one of the spheres that cover the capsule is near, too. Not
+// inlined: is_clear is 2 % faster.
 template <int N>
-[[nodiscard]] bool is_near(const Arm<N>& arm, const ArmPose<N>& pose, int i_capsule,
-                           const Convex3& obstacle, double radius_m) noexcept {
+[[nodiscard]] [[gnu::noinline]] bool is_near(const Arm<N>& arm, const ArmPose<N>& pose,
+                                             int i_capsule, const Convex3& obstacle,
+                                             double radius_m) noexcept {
   if (obstacle.kind == CoreKind::kCylinder || obstacle.kind == CoreKind::kHull) {
     const Pose3& X = pose.X_WJ[static_cast<std::size_t>(arm.capsule_link(i_capsule))];
     const auto cover = arm.cover(i_capsule);

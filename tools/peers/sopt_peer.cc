@@ -11,7 +11,7 @@ template <class Robot>
 PlanRequest<Robot> request_of(const PeerProblem<Robot>& problem, const SoptVariant& variant) {
   PlanRequest<Robot> request = problem.request;
   request.options.sampler = variant.sampler;
-  request.options.num_streams = variant.num_streams;
+  if (variant.num_streams > 0) request.options.num_streams = variant.num_streams;
   request.options.lattice = variant.lattice;
   return request;
 }

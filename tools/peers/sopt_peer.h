@@ -18,7 +18,7 @@ enum class SoptStage {
 struct SoptVariant {
   SoptStage stage = SoptStage::kVerifiedPlan;
   SamplerMode sampler = PlanOptions{}.sampler;
-  int num_streams = 0;  // as in PlanOptions; one ends with its first path, as a single tree does
+  int num_streams = 0;  // 0: the request's; one ends with its first path, as a single tree does
   bool lattice = true;  // false: samples alone, to be held against planners that only sample
 };
 
