@@ -96,7 +96,7 @@ class ArmGapFinder {
   double min_clearance_m_ = 0.0;
   std::int64_t num_queries_ = 0;
   ArmPose<N> pose_;
-  ArmGaps<N> farthest_;  // 0 where something may come near, else infinite
+  ArmGaps<N> farthest_{};  // 0 where something may come near, else infinite
 };
 
 template <int N>

@@ -130,7 +130,7 @@ class MotionCheck {
     for (int i = 0; i < kLanesFloat; ++i) middle[i] = taken_[at(i)].middle;
     const V4d low = load4(middle);
     const V4d high = load4(middle + kLanesDouble);
-    LaneConfig<N> q;
+    LaneConfig<N> q{};
     for (int j = 0; j < N; ++j) {
       q.joint[at(j)] = {a_[j] + low * travel_[j], a_[j] + high * travel_[j]};
     }
@@ -158,7 +158,7 @@ class MotionCheck {
     const CoverSphere& cover = arm_.link_cover(l);
     const LaneVec3 c = center_W(l, cover);
     const PaddedLanes sphere({c.x, c.y, c.z, (cover.radius_m + pad_m_) + spread.extra_m});
-    std::array<NearObstacle, kObstaclesAtOnce> near;
+    std::array<NearObstacle, kObstaclesAtOnce> near{};
     std::size_t num = 0;
     const bool is_clear = world_.for_each_near(sphere, live_, rule_, [&](int i, unsigned lanes) {
       near[num++] = {i, lanes, 0};
@@ -226,8 +226,8 @@ class MotionCheck {
       for (const CoverSphere& s : arm_.cover(i)) {
         const unsigned lanes = lanes_near_b(s);
         if (lanes == 0) continue;
-        look.spheres[at(look.num++)] = {to_frame(b.i_link, center_W(a.i_link, s)), s.radius_m,
-                                        lanes};
+        pair_spheres_[at(look.num++)] = {to_frame(b.i_link, center_W(a.i_link, s)), s.radius_m,
+                                         lanes};
         if (look.num == kSpheresAtOnce) look_at_capsules(a, b, look);
       }
     }
@@ -240,15 +240,13 @@ class MotionCheck {
     return true;
   }
 
-  // Spheres of a, their middles in the frame of b's link, against the capsules of b; and what was
-  // found.
+  // The first `num` of pair_spheres_ against the capsules of a body; and what was found.
+  struct PairSphere {
+    LaneVec3 middle;
+    float radius_m;
+    unsigned lanes;
+  };
   struct PairLook {
-    struct Sphere {
-      LaneVec3 middle;
-      float radius_m;
-      unsigned lanes;
-    };
-    std::array<Sphere, kSpheresAtOnce> spheres;
     int num = 0;
     unsigned near = 0;      // lanes to be halved
     unsigned touching = 0;  // lanes that need the exact answer
@@ -259,7 +257,7 @@ class MotionCheck {
       const Spread spread = spread_of(
           float_above(arm_.capsule_displacement_bound(k, abs_travel_, a.i_link)), self_room_m_);
       for (int i = 0; i < look.num; ++i) {
-        const auto& [middle, radius_m, lanes] = look.spheres[at(i)];
+        const auto& [middle, radius_m, lanes] = pair_spheres_[at(i)];
         LaneVec3 apart{middle.x - c.p0[0], middle.y - c.p0[1], middle.z - c.p0[2]};
         if (c.inverse_length2 > 0.0F) {
           const V8f along = apart.x * c.axis[0] + apart.y * c.axis[1] + apart.z * c.axis[2];
@@ -305,6 +303,7 @@ class MotionCheck {
   unsigned open_ = 0;  // lanes to be halved
   LanePose<N> lanes_;
   std::array<ArmPose<N>, kLanesFloat> poses_;
+  std::array<PairSphere, kSpheresAtOnce> pair_spheres_;  // in the frame of the other body's link
   unsigned posed_ = 0;
 };
 
