@@ -7,6 +7,7 @@
 #include "opt/margin_ladder.h"
 #include "opt/reference.h"
 #include "opt/request_rules.h"
+#include "opt/step_measure.h"
 #include "opt/time_scaling.h"
 #include "rt/float_env.h"
 
@@ -210,7 +211,7 @@ template <class Robot>
 OptimizerResult<Robot> Planner<Robot>::optimize(const Call& call, const Deadline& deadline,
                                                 Trajectory<Robot>& trajectory) SOPT_RT {
   const PlanRequest<Robot>& request = call.request;
-  const double reference_length = path_length(trajectory);
+  const double reference_length = path_length(robot_, trajectory);
   const OptimizerResult<Robot> optimized = optimizer_.optimize(
       {&robot_, request.world, call.ladder[static_cast<std::size_t>(call.i_rung)], call.step_length,
        &request.options},

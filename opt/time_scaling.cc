@@ -3,15 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sopt {
+#include "opt/step_measure.h"
 
-double path_length(const Trajectory<Point2>& trajectory) SOPT_RT {
-  double length = 0.0;
-  for (int t = 0; t < trajectory.horizon(); ++t) {
-    length += (trajectory.states[t + 1] - trajectory.states[t]).norm();
-  }
-  return length;
-}
+namespace sopt {
 
 void scale_time(const Point2& robot, double reference_length,
                 Trajectory<Point2>& trajectory) SOPT_RT {
@@ -23,17 +17,8 @@ void scale_time(const Point2& robot, double reference_length,
   if (longest_step_m == 0.0) return;
   // A hair above the limit's step time: dividing by it again must not round above the limit.
   constexpr double kRoundingGuard = 1.0 + 1e-12;
-  trajectory.dt_s = std::max(trajectory.dt_s * path_length(trajectory) / reference_length,
+  trajectory.dt_s = std::max(trajectory.dt_s * path_length(robot, trajectory) / reference_length,
                              longest_step_m / robot.v_max_mps * kRoundingGuard);
-}
-
-template <int N>
-double path_length(const Trajectory<Arm<N>>& trajectory) SOPT_RT {
-  double length = 0.0;
-  for (int t = 0; t < trajectory.horizon(); ++t) {
-    length += (trajectory.states[t + 1] - trajectory.states[t]).template head<N>().norm();
-  }
-  return length;
 }
 
 template <int N>
@@ -50,8 +35,9 @@ void scale_time(const Arm<N>& robot, double reference_length,
   }
   if (speed == 0.0) return;
   constexpr double kRoundingGuard = 1.0 + 1e-9;
-  const double scale = std::max({path_length(trajectory) / reference_length, kRoundingGuard * speed,
-                                 kRoundingGuard * std::sqrt(acceleration / trajectory.dt_s)});
+  const double scale =
+      std::max({path_length(robot, trajectory) / reference_length, kRoundingGuard * speed,
+                kRoundingGuard * std::sqrt(acceleration / trajectory.dt_s)});
   trajectory.dt_s *= scale;
   for (auto& state : trajectory.states) state.template tail<N>() /= scale;
 }
@@ -74,19 +60,14 @@ bool fill_inputs(Trajectory<Point2>& trajectory) SOPT_RT {
   return true;
 }
 
-template double path_length(const Trajectory<Arm<4>>&) SOPT_RT;
 template void scale_time(const Arm<4>&, double, Trajectory<Arm<4>>&) SOPT_RT;
 template bool fill_inputs(Trajectory<Arm<4>>&) SOPT_RT;
-template double path_length(const Trajectory<Arm<5>>&) SOPT_RT;
 template void scale_time(const Arm<5>&, double, Trajectory<Arm<5>>&) SOPT_RT;
 template bool fill_inputs(Trajectory<Arm<5>>&) SOPT_RT;
-template double path_length(const Trajectory<Arm<6>>&) SOPT_RT;
 template void scale_time(const Arm<6>&, double, Trajectory<Arm<6>>&) SOPT_RT;
 template bool fill_inputs(Trajectory<Arm<6>>&) SOPT_RT;
-template double path_length(const Trajectory<Arm<7>>&) SOPT_RT;
 template void scale_time(const Arm<7>&, double, Trajectory<Arm<7>>&) SOPT_RT;
 template bool fill_inputs(Trajectory<Arm<7>>&) SOPT_RT;
-template double path_length(const Trajectory<Arm<8>>&) SOPT_RT;
 template void scale_time(const Arm<8>&, double, Trajectory<Arm<8>>&) SOPT_RT;
 template bool fill_inputs(Trajectory<Arm<8>>&) SOPT_RT;
 

@@ -30,9 +30,4 @@ void scale_time(const Arm<N>& robot, double reference_length,
 template <int N>
 [[nodiscard]] bool fill_inputs(Trajectory<Arm<N>>& trajectory) SOPT_RT;
 
-// Sum over steps of the change of position, in the path metric.
-[[nodiscard]] double path_length(const Trajectory<Point2>& trajectory) SOPT_RT;
-template <int N>
-[[nodiscard]] double path_length(const Trajectory<Arm<N>>& trajectory) SOPT_RT;
-
 }  // namespace sopt

@@ -38,10 +38,11 @@ void SamplerStream<Robot>::reset(const StreamProblem<Robot>& problem,
   const auto box = problem.robot->sampling_box(*problem.world, problem.profile.rule);
   box_lower_ = box.lower;
   box_size_ = (box.upper - box.lower).cwiseMax(0.0);
-  range_ = SamplerTuning<Robot>::kRangeShare * box_size_.norm();
+  const Config metric_size = problem.robot->weights().cwiseProduct(box_size_);
+  range_ = SamplerTuning<Robot>::kRangeShare * metric_size.norm();
   const double d = Robot::kDof;
   radius_scale_ =
-      2.0 * std::pow((1.0 + 1.0 / d) * box_size_.prod() / unit_ball_volume(Robot::kDof), 1.0 / d);
+      2.0 * std::pow((1.0 + 1.0 / d) * metric_size.prod() / unit_ball_volume(Robot::kDof), 1.0 / d);
 }
 
 template <class Robot>

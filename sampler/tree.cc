@@ -76,11 +76,13 @@ void Tree<Robot>::find_near(const Config& q, double radius, NearNodes& out) cons
   V8i best_index{};
   V8i index{0, 1, 2, 3, 4, 5, 6, 7};
   out.count = 0;
+  const Config weights = robot_->weights();
   for (int i = 0; i < nodes_.size(); i += kLanesFloat, index += kLanesFloat) {
     V8f distance2 = splat8(0.0F);
     for (int dof = 0; dof < Robot::kDof; ++dof) {
       V8f d = load8(coordinate_[static_cast<std::size_t>(dof)] + i) - static_cast<float>(q[dof]);
       if (robot_->is_continuous(dof)) d = short_way8(d);
+      d *= static_cast<float>(weights[dof]);
       distance2 += d * d;
     }
     best_index = distance2 < best ? index : best_index;

@@ -1,8 +1,8 @@
 // A tree of configurations in fixed storage, with costs from the root. Neighbour search is a linear
 // scan over structure-of-arrays floats, eight nodes at a time: below 8 k nodes in 2-D it beats
-// kd-trees (docs/RESULTS.md) and needs no upkeep. Joints that turn without end count the short way.
-// Floats only choose neighbours; every length that enters a cost is computed in double from the
-// configurations.
+// kd-trees (docs/RESULTS.md) and needs no upkeep. Joints that turn without end count the short way,
+// all of them by their weights. Floats only choose neighbours; every length that enters a cost is
+// computed in double from the configurations.
 #pragma once
 
 #include <array>

@@ -44,6 +44,7 @@ ArmStatus Arm<N>::reset(const ArmDescription<N>& description) noexcept {
     next.upper_[j] = joint.upper;
     next.v_max_[j] = joint.v_max;
     next.a_max_[j] = joint.a_max;
+    next.weights_[j] = joint.weight;
     next.is_continuous_[j] = joint.kind == JointKind::kContinuous ? 1.0 : 0.0;
   }
   next.fold_frames(description.X_WB);

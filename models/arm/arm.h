@@ -59,7 +59,6 @@ class Arm {
  public:
   static_assert(N >= kMinArmJoints && N <= kMaxArmJoints);
   static constexpr int kDof = N;
-  static constexpr int kNumLinks = N + 1;
   using Config = Eigen::Matrix<double, N, 1>;
   using State = Eigen::Matrix<double, 2 * N, 1>;  // (theta, omega)
   using Input = Config;                           // alpha
@@ -131,9 +130,14 @@ class Arm {
   // b up to whole turns of continuous joints, nearest to a: a + difference(a, b), but exactly b
   // where no turn is taken.
   [[nodiscard]] Config unwrapped(const Config& a, const Config& b) const SOPT_RT;
-  // 2-norm of the difference: rad, sliding joints in m.
+  // The path metric: 2-norm of the difference, each joint times its weight. With weights 1: rad,
+  // sliding joints in m. Whatever is called a length is in this metric: steps, paths, costs.
   [[nodiscard]] double path_distance(const Config& a, const Config& b) const SOPT_RT {
-    return difference(a, b).norm();
+    return motion_length(difference(a, b));
+  }
+  // Length of a motion by dq.
+  [[nodiscard]] double motion_length(const Config& dq) const SOPT_RT {
+    return weights_.cwiseProduct(dq).norm();
   }
   // The configuration at share s in [0, 1] of the motion from a to b. Continuous joints end at b's
   // angle up to whole turns, so that the motion has no jump.
@@ -177,6 +181,7 @@ class Arm {
   [[nodiscard]] const Config& upper() const SOPT_RT { return upper_; }
   [[nodiscard]] const Config& v_max() const SOPT_RT { return v_max_; }
   [[nodiscard]] const Config& a_max() const SOPT_RT { return a_max_; }
+  [[nodiscard]] const Config& weights() const SOPT_RT { return weights_; }
   [[nodiscard]] int num_capsules() const SOPT_RT { return num_capsules_; }
   // Capsules of link i_link are [first_capsule(i_link), first_capsule(i_link + 1)).
   [[nodiscard]] int first_capsule(int i_link) const SOPT_RT { return first_[at(i_link)]; }
@@ -246,6 +251,7 @@ class Arm {
   std::array<ArmJoint, N> joints_{};
   Config lower_ = Config::Zero(), upper_ = Config::Zero();
   Config v_max_ = Config::Zero(), a_max_ = Config::Zero();
+  Config weights_ = Config::Ones();
   Config is_continuous_ = Config::Zero();  // 1 or 0
   Kinematics kinematics_{};
   std::array<Mat3, N + 1> R_JL_{};  // link frame in its joint frame

@@ -19,6 +19,8 @@ ArmStatus check_joint(const ArmJoint& joint) noexcept {
                                          : joint.lower <= joint.upper;
   if (!limits_hold) return ArmStatus::kBadLimits;
   if (!(joint.v_max > 0.0) || !(joint.a_max > 0.0)) return ArmStatus::kBadRate;
+  const bool weight_fits = joint.weight >= 1.0 / kMaxJointWeight && joint.weight <= kMaxJointWeight;
+  if (!weight_fits) return ArmStatus::kBadWeight;
   return ArmStatus::kOk;
 }
 

@@ -6,10 +6,6 @@
 namespace sopt {
 namespace {
 
-Aabb3 grown(const Aabb3& box, double by_m) noexcept {
-  return {box.lower - Vec3::Constant(by_m), box.upper + Vec3::Constant(by_m)};
-}
-
 // Square of the distance from a core to a point in the core's frame, relative to its center; of a
 // hull of the widest plane distance.
 double core_distance2(const Convex3& shape, const Vec3& offset) noexcept {
@@ -115,7 +111,7 @@ ArmContact nearest_obstacle(const Arm<N>& arm, const World3& world, const ArmPos
       if (may_be_within(world.obstacle(i), sphere, best_m) &&
           arm_clearance_detail::find_nearest_capsule(arm, world, pose, l, i, best_m, c) &&
           c.distance_m < best_m) {
-        nearest = {l, i, -1, c};
+        nearest = {l, i, kNoLink, c};
       }
       return true;
     });

@@ -17,7 +17,7 @@ namespace sopt {
 struct ArmContact {
   int i_link = 0;
   int i_obstacle = kNoObstacle;  // kSelfObstacle: another link
-  int i_other_link = -1;         // then this one, < i_link
+  int i_other_link = kNoLink;    // then this one, < i_link
   Clearance3 clearance;          // from the obstacle or other link to i_link
 };
 
@@ -178,7 +178,7 @@ bool for_each_contact(const Arm<N>& arm, const World3& world, const ArmPose<N>& 
     const bool went_on = world.for_each_near(box_around(sphere, radius_m), [&](int i) {
       const Convex3& obstacle = world.obstacle(i);
       if (!may_be_within(obstacle, sphere, radius_m)) return true;
-      ArmContact contact{l, i, -1, {}};
+      ArmContact contact{l, i, kNoLink, {}};
       return !detail::find_nearest_capsule(arm, world, pose, l, i, radius_m, contact.clearance) ||
              visit(static_cast<const ArmContact&>(contact));
     });

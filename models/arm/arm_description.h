@@ -12,16 +12,21 @@
 
 namespace sopt {
 
+// Joint weights compare metres with radians and long links with short ones. Far beyond this ratio
+// the light joints' share of a length is lost in rounding.
+inline constexpr double kMaxJointWeight = 1e3;
+
 enum class JointKind : std::int8_t { kRevolute, kContinuous, kPrismatic };
 
 struct ArmJoint {
   Pose3 origin;               // joint frame in the frame of the link before it, at q = 0
   Vec3 axis = Vec3::UnitZ();  // unit, in the joint frame
   JointKind kind = JointKind::kRevolute;
-  double lower = 0.0;  // unit; -inf for continuous
-  double upper = 0.0;  // unit; +inf for continuous
-  double v_max = 0.0;  // unit/s, > 0
-  double a_max = 0.0;  // unit/s^2, > 0
+  double lower = 0.0;   // unit; -inf for continuous
+  double upper = 0.0;   // unit; +inf for continuous
+  double v_max = 0.0;   // unit/s, > 0
+  double a_max = 0.0;   // unit/s^2, > 0
+  double weight = 1.0;  // of the path metric, 1/kMaxJointWeight..kMaxJointWeight
 };
 
 // Part of a link. Capsules of one link that have different partners in self-collision belong to
@@ -63,6 +68,7 @@ enum class ArmStatus : std::int8_t {
   kTooManyCapsules = -9,  // kMaxLinkCapsules
   kTooManyBodies = -10,   // kMaxBodies
   kTooManyPairs = -11,    // kMaxBodyPairs
+  kBadWeight = -12,       // outside 1/kMaxJointWeight..kMaxJointWeight
 };
 
 }  // namespace sopt

@@ -33,6 +33,8 @@ struct Point2 {
     return a + s * (b - a);
   }
 
+  // Of a coordinate in the path metric.
+  [[nodiscard]] static Vec2 weights() SOPT_RT { return Vec2::Ones(); }
   // Nothing turns without end.
   [[nodiscard]] static constexpr bool is_continuous(int /*i_dof*/) SOPT_RT { return false; }
   [[nodiscard]] static Config unwrapped(const Config& /*a*/, const Config& b) SOPT_RT { return b; }

@@ -116,5 +116,8 @@ struct Interval {
   const Vec3 radius = Vec3::Constant(capsule.radius_m);
   return {capsule.p0.cwiseMin(capsule.p1) - radius, capsule.p0.cwiseMax(capsule.p1) + radius};
 }
+[[nodiscard]] inline Aabb3 grown(const Aabb3& box, double by_m) SOPT_RT {
+  return {box.lower - Vec3::Constant(by_m), box.upper + Vec3::Constant(by_m)};
+}
 
 }  // namespace sopt

@@ -5,10 +5,6 @@
 namespace sopt {
 namespace {
 
-Aabb3 grown(const Aabb3& box, double by_m) noexcept {
-  return {box.lower - Vec3::Constant(by_m), box.upper + Vec3::Constant(by_m)};
-}
-
 double min_of(const V8f& v) noexcept {
   float low = v[0];
   for (int i = 1; i < kLanesFloat; ++i) low = v[i] < low ? v[i] : low;

@@ -13,7 +13,7 @@ constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
 Aabb3 no_box() noexcept { return {Vec3::Constant(kInfinity), Vec3::Constant(-kInfinity)}; }
 
-Aabb3 grown(const Aabb3& box, double by_m) noexcept {
+Aabb3 widened(const Aabb3& box, double by_m) noexcept {
   return {box.lower - Vec3::Constant(by_m), box.upper + Vec3::Constant(by_m)};
 }
 
@@ -79,7 +79,7 @@ void ArmCcd<N>::load_obstacles(int first) noexcept {
   first_obstacle_ = first;
   num_obstacles_ = std::min(world_.num_obstacles() - first, kMaxObstacles);
   for (int i = 0; i < num_obstacles_; ++i) {
-    near_[at(i)] = grown(box_around(world_.obstacle(first + i)), inflate_m_ + kCcdReach_m);
+    near_[at(i)] = widened(box_around(world_.obstacle(first + i)), inflate_m_ + kCcdReach_m);
   }
 }
 
@@ -104,7 +104,7 @@ void ArmCcd<N>::place_arm(int waypoint) noexcept {
 template <int N>
 bool ArmCcd<N>::find_bodies(ArmPair& pair) const noexcept {
   for (const auto& bodies : arm_.self_collision_pairs()) {
-    const Aabb3 near = grown(body_boxes_[at(bodies.i_body_b)], self_inflate_m_ + kCcdReach_m);
+    const Aabb3 near = widened(body_boxes_[at(bodies.i_body_b)], self_inflate_m_ + kCcdReach_m);
     if (!overlap(near, body_boxes_[at(bodies.i_body_a)]) || !may_touch(bodies)) continue;
     pair.i_link = arm_.body(bodies.i_body_b).i_link;
     pair.i_body = bodies.i_body_b;
@@ -119,7 +119,7 @@ bool ArmCcd<N>::may_touch(const typename Arm<N>::IndexPair& bodies) const noexce
   const ArmBody& one = arm_.body(bodies.i_body_b);
   const ArmBody& other = arm_.body(bodies.i_body_a);
   for (int i = one.first; i < one.last; ++i) {
-    const Aabb3 near = grown(capsule_boxes_[at(i)], self_inflate_m_ + kCcdReach_m);
+    const Aabb3 near = widened(capsule_boxes_[at(i)], self_inflate_m_ + kCcdReach_m);
     if (!overlap(near, body_boxes_[at(bodies.i_body_a)])) continue;
     for (int k = other.first; k < other.last; ++k) {
       if (!overlap(near, capsule_boxes_[at(k)])) continue;

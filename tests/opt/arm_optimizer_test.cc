@@ -4,6 +4,7 @@
 
 #include "models/arm/arm_presets.h"
 #include "opt/segmented_optimizer.h"
+#include "opt/step_measure.h"
 #include "opt/time_scaling.h"
 #include "tests/support/arm_segment.h"
 #include "tests/support/rt_guard.h"
@@ -86,19 +87,19 @@ TEST_F(ArmOptimizerTest, CostsOfWindowsAddUpToTheCost) {
   InArena<Splits> splits(settings_.max_horizon);
   ASSERT_TRUE(splits->try_reset(static_cast<int>(before.size()) - 1, 5));
   InArena<FixedVector<Window>> windows(settings_.max_horizon);
-  const double whole = oracle::arm_cost<kDof>(before, options_.dt_s, kStep);
+  const double whole = oracle::arm_cost(robot_, before, options_.dt_s, kStep);
   for (const Parity parity : {Parity::kOdd, Parity::kEven}) {
     splits->list_windows(parity, *windows);
     double sum = 0.0;
     for (const Window& w : *windows) {
       const States part(before.begin() + w.first, before.begin() + w.last + 1);
-      sum += oracle::arm_cost<kDof>(part, options_.dt_s, kStep);
+      sum += oracle::arm_cost(robot_, part, options_.dt_s, kStep);
     }
     EXPECT_NEAR(sum, whole, 1e-12 * whole);
   }
   const Run run = optimize();
   EXPECT_NEAR(run.history[0].cost, whole, 1e-12 * whole);
-  EXPECT_NEAR(run.history[1].cost, oracle::arm_cost<kDof>(run.states, options_.dt_s, kStep),
+  EXPECT_NEAR(run.history[1].cost, oracle::arm_cost(robot_, run.states, options_.dt_s, kStep),
               1e-12 * whole);
 }
 
@@ -154,7 +155,7 @@ TEST_F(ArmOptimizerTest, KeepsTheLimitsWhenTimeIsScaled) {
     draw(seed);
     (void)optimize();
     auto& trajectory = trajectory_.trajectory;
-    scale_time(robot_, path_length(reference_.trajectory), trajectory);
+    scale_time(robot_, path_length(robot_, reference_.trajectory), trajectory);
     EXPECT_LE(trajectory.dt_s, options_.dt_s * (1.0 + 1e-6));
     const States states(trajectory.states.begin(), trajectory.states.end());
     const auto facts = oracle::examine(robot_, test_.world, states, trajectory.dt_s, 16);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "opt/step_measure.h"
 #include "tests/support/test_problem.h"
 #include "tests/support/test_trajectory.h"
 
@@ -112,7 +113,7 @@ TEST(FillInputs, RefusesWhatDoesNotFit) {
 
 TEST(PathLength, AddsUpTheSteps) {
   TestTrajectory test({{0, 0}, {3, 4}, {3, 5}, {3, 5}});
-  EXPECT_DOUBLE_EQ(path_length(test.trajectory), 6.0);
+  EXPECT_DOUBLE_EQ(path_length(Point2{}, test.trajectory), 6.0);
 }
 
 }  // namespace

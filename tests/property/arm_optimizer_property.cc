@@ -115,7 +115,7 @@ std::string check_arm(Random& random, const Arm<N>& arm, CaseReport& report) {
       report.fail("after " + std::to_string(result.iterations) + " sweeps the iterate " + fault);
     }
     const States<N> states(trajectory.states.begin(), trajectory.states.end());
-    const double expected = arm_cost<N>(states, trajectory.dt_s, step_length);
+    const double expected = arm_cost<N>(arm, states, trajectory.dt_s, step_length);
     report.expect_within("told cost", std::abs(result.cost - expected), 1e-9 * (1.0 + expected));
   }
   return std::to_string(N) + " joints, " + std::to_string(test.world.num_obstacles()) +

@@ -56,7 +56,7 @@ void check_window(Random& random, CaseReport& report) {
   const WindowResult result = optimizer.window->optimize(problem, window, Deadline());
 
   const auto cost = [&](const States<N>& z) {
-    return arm_cost<N>(States<N>(z.begin() + window.first, z.begin() + window.last + 1), kDt_s,
+    return arm_cost<N>(arm, States<N>(z.begin() + window.first, z.begin() + window.last + 1), kDt_s,
                        kStep);
   };
   report.expect("the window ran", result.status != WindowStatus::kNotRun);

@@ -21,7 +21,7 @@ struct MotionMinimum {
   double t_s = 0.0;
   int i_link = 0;
   int i_obstacle = kNoObstacle;
-  int i_other_link = -1;
+  int i_other_link = kNoLink;
 };
 
 // Over all obstacles, or the one given, and over all pairs of bodies that may collide, or the one.

@@ -74,6 +74,24 @@ struct RandomArm {
   Arm<N> arm;
 };
 
+// Half of the arms weigh all joints alike. Drawn apart from the rest, which stays as it is.
+template <int N>
+void draw_weights(ArmDescription<N>& description) {
+  Random random(static_cast<std::uint64_t>(1e9 * description.joints[0].v_max));
+  const bool alike = random.chance(0.5);
+  for (ArmJoint& joint : description.joints) {
+    joint.weight = alike ? 1.0 : std::exp2(random.uniform(-2.0, 2.0));
+  }
+}
+
+// Length of a motion by dq in the path metric, joint by joint.
+template <int N>
+[[nodiscard]] double weighted_length(const Arm<N>& arm, const typename Arm<N>::Config& dq) {
+  double sum = 0.0;
+  for (int j = 0; j < N; ++j) sum += std::pow(arm.joint(j).weight * dq[j], 2);
+  return std::sqrt(sum);
+}
+
 template <int N>
 void draw_arm(Random& random, RandomArm<N>& out) {
   out.description.X_WB = random_pose(random, 1.0);
@@ -91,6 +109,7 @@ void draw_arm(Random& random, RandomArm<N>& out) {
     joint.v_max = random.uniform(0.1, 3.0);
     joint.a_max = random.uniform(0.1, 9.0);
   }
+  draw_weights(out.description);
   out.capsules.clear();
   for (int i = 0; i < 3 * (N + 1); ++i) {
     LinkCapsule capsule{random.index(N + 1), random_vector(random, 0.3), random_vector(random, 0.3),
@@ -127,6 +146,7 @@ template <int N>
     joint.v_max = random.uniform(0.3, 3.0);
     joint.a_max = random.uniform(1.0, 15.0);
   }
+  draw_weights(out.description);
   out.description.capsules = out.capsules;
   if (out.arm.reset(out.description) != ArmStatus::kOk) return false;
   const LinkPairList pairs = find_pairs_apart(out.arm);

@@ -291,7 +291,7 @@ PlanFacts examine_plan(const Arm<N>& arm, const World3& world, const Trajectory<
         std::max({facts.defect, (end - next.template head<N>()).norm(),
                   (z.template tail<N>() + plan.dt_s * u - next.template tail<N>()).norm()});
     facts.limit_excess = std::max(facts.limit_excess, step_excess(arm, z, u, plan.dt_s));
-    facts.length += (next - z).template head<N>().norm();
+    facts.length += weighted_length<N>(arm, (next - z).template head<N>());
   }
   facts.clearance_m =
       least_over<N>(plan, samples, [&](const auto& q) { return plain.clearance_m(world, q); });

@@ -117,11 +117,12 @@ template <int N>
 }
 
 template <int N>
-[[nodiscard]] double arm_cost(const States<N>& z, double dt_s, double ds) {
+[[nodiscard]] double arm_cost(const Arm<N>& arm, const States<N>& z, double dt_s, double ds) {
   double sum = 0.0;
   for (std::size_t t = 0; t + 1 < z.size(); ++t) {
-    sum += (dt_s * z[t].template tail<N>()).squaredNorm();
-    sum += 2.0 * (dt_s * (z[t + 1] - z[t]).template tail<N>()).squaredNorm();
+    const typename Arm<N>::Config change = (z[t + 1] - z[t]).template tail<N>();
+    sum += std::pow(weighted_length(arm, dt_s * z[t].template tail<N>()), 2);
+    sum += 2.0 * std::pow(weighted_length(arm, dt_s * change), 2);
   }
   return sum / ds;
 }

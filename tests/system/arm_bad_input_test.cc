@@ -1,5 +1,7 @@
 // Requests of an arm that cannot be planned, as the program answers them: which joint, link and
 // obstacle it is, by how much, and what is allowed.
+#include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -125,6 +127,24 @@ TEST_F(ArmBadInputTest, LimitsOfTheSceneHoldInThePlan) {
   const ProgramRun fast = run("verify scene.json fast.json");
   EXPECT_EQ(fast.exit_code, 1);
   EXPECT_EQ(fast.out.rfind("rejected  ", 0), 0U) << fast.out;
+}
+
+// Around the obstacles with little of the joint that is dear, with a lot of it where it is cheap.
+TEST_F(ArmBadInputTest, JointsThatWeighMoreMoveLess) {
+  std::ifstream(std::string(SOPT_SOURCE_DIR) + "/tools/scenes/arm/arm_8_03.json") >> scene_;
+  const auto travel_at = [&](double weight) {
+    scene_["joint_weights"] = {weight, nullptr, 1, 1, 1};
+    write("scene.json", scene_.dump());
+    EXPECT_EQ(run("plan scene.json -o plan.json").exit_code, 0);
+    EXPECT_EQ(run("verify scene.json plan.json").exit_code, 0);
+    double travel = 0.0;
+    const json states = json::parse(read("plan.json"))["states"];
+    for (std::size_t t = 1; t < states.size(); ++t) {
+      travel += std::abs(states[t][0].get<double>() - states[t - 1][0].get<double>());
+    }
+    return travel;
+  };
+  EXPECT_LT(travel_at(10.0), 0.7 * travel_at(0.1));
 }
 
 }  // namespace

@@ -1,20 +1,14 @@
 // Cost of the pieces a plan is made of, on generated scenes: distance, edge test and broad phase
-// against the number of obstacles, neighbour scan against the size of the tree, one window's QP. Of
-// arms, from the project's root: random configurations in the shipped scenes of 7 to 9 obstacles.
+// against the number of obstacles, neighbour scan against the size of the tree, one window's QP.
+// micro_bench_space.cc has those of space.
 // usage: sopt_micro_bench [options of google-benchmark]
 #include <benchmark/benchmark.h>
 
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
-#include <string>
-#include <vector>
 
 #include "alloc/memory_block.h"
-#include "models/arm/arm_clearance.h"
-#include "models/arm/arm_lanes.h"
-#include "models/arm/arm_motion.h"
 #include "models/plane/clearance2.h"
 #include "models/plane/point2.h"
 #include "models/plane/world2.h"
@@ -22,7 +16,6 @@
 #include "opt/qp/point_rows.h"
 #include "sampler/rng.h"
 #include "sampler/tree.h"
-#include "tools/io/arm_scene.h"
 
 namespace sopt {
 namespace {
@@ -139,138 +132,6 @@ void window_qp(benchmark::State& state) {
   }
 }
 BENCHMARK(window_qp)->Arg(15)->Arg(30)->Arg(60);
-
-// Shipped scenes, and configurations drawn between the limits.
-class ArmBench {
- public:
-  static constexpr int kDof = 5;
-  using Config = Arm<kDof>::Config;
-
-  ArmBench() {
-    for (int i = 1; i <= 20; ++i) {
-      const std::string file =
-          "tools/scenes/arm/arm_8_" + std::to_string(100 + i).substr(1) + ".json";
-      if (std::filesystem::exists(file)) scenes_.push_back(load_any_scene(file));
-    }
-    if (scenes_.empty()) return;
-    CounterRng rng(3);
-    const Arm<kDof>& arm = scene(0).arm;
-    for (Config& q : configs_) {
-      for (int j = 0; j < kDof; ++j) {
-        q[j] = arm.lower()[j] + rng.next_uniform() * (arm.upper()[j] - arm.lower()[j]);
-      }
-    }
-  }
-
-  [[nodiscard]] bool is_present(benchmark::State& state) const {
-    if (scenes_.empty()) state.SkipWithError("no tools/scenes/arm here");
-    return !scenes_.empty();
-  }
-  [[nodiscard]] const ArmScene<kDof>& scene(std::size_t i) const {
-    return std::get<ArmScene<kDof>>(scenes_[i % scenes_.size()]);
-  }
-  [[nodiscard]] const Config& config(std::size_t i) const { return configs_[i % kNumInputs]; }
-
- private:
-  std::vector<AnyScene> scenes_;
-  std::array<Config, kNumInputs> configs_;
-};
-
-ClearanceRule rule_of(const PlanOptions& options) {
-  return {.margin_m = options.margin_m, .rung = 1.0, .floor_m = options.min_clearance_m};
-}
-
-void count_configurations(benchmark::State& state, int per_iteration, std::int64_t num_clear) {
-  const double num = static_cast<double>(state.iterations()) * per_iteration;
-  state.counters["configuration"] =
-      benchmark::Counter(num, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-  state.counters["clear"] = static_cast<double>(num_clear) / num;
-}
-
-// Forward kinematics, obstacles and pairs of links.
-void arm_exact(benchmark::State& state) {
-  const ArmBench bench;
-  if (!bench.is_present(state)) return;
-  std::size_t i = 0;
-  std::int64_t num_clear = 0;
-  for (auto _ : state) {
-    const auto& scene = bench.scene(i);
-    ArmPose<ArmBench::kDof> pose;
-    scene.arm.forward(bench.config(i++), pose);
-    num_clear +=
-        is_clear(scene.arm, *scene.world, pose, rule_of(scene.options), kSelfClearance_m) ? 1 : 0;
-  }
-  count_configurations(state, 1, num_clear);
-}
-BENCHMARK(arm_exact);
-
-// Eight configurations that have nothing to do with each other, links' spheres first, then strict
-// covers; obstacles only.
-template <int N>
-unsigned lanes_near(const ArmScene<N>& scene, const LaneConfig<N>& q, float pad_m) {
-  const ClearanceRule rule = rule_of(scene.options);
-  LanePose<N> pose;
-  forward_lanes(scene.arm, q, pose);
-  unsigned near = 0;
-  const auto may_be_near = [&](int l, const CoverSphere& s) {
-    const LaneFrame& X = pose.X_WJ[static_cast<std::size_t>(l)];
-    const LaneVec3 c = X.position + turn(X, s.center[0], s.center[1], s.center[2]);
-    return scene.world->lanes_near(SphereLanes{c.x, c.y, c.z, splat8(s.radius_m + pad_m)}, rule);
-  };
-  for (int l = 1; l <= N && near != kAllLanes; ++l) {
-    const int first = scene.arm.first_capsule(l);
-    const int last = scene.arm.first_capsule(l + 1);
-    if (first == last) continue;
-    const unsigned candidates = may_be_near(l, scene.arm.link_cover(l)) & ~near;
-    if (candidates == 0) continue;
-    for (int k = first; k < last; ++k) {
-      for (const CoverSphere& s : scene.arm.cover(k)) near |= candidates & may_be_near(l, s);
-    }
-  }
-  return near;
-}
-
-void arm_lanes(benchmark::State& state) {
-  const ArmBench bench;
-  if (!bench.is_present(state)) return;
-  constexpr double kReach_m = 4.0;  // more than any point's of the arm
-  const auto pad_m = static_cast<float>(lane_pad_m(bench.scene(0).arm, kReach_m, 0.0));
-  std::size_t i = 0;
-  std::int64_t num_clear = 0;
-  for (auto _ : state) {
-    const std::size_t first = i * kLanesFloat;
-    LaneConfig<ArmBench::kDof> q;
-    for (int j = 0; j < ArmBench::kDof; ++j) {
-      LaneJoint& joint = q.joint[static_cast<std::size_t>(j)];
-      for (std::size_t k = 0; k < kLanesDouble; ++k) {
-        joint.low[k] = bench.config(first + k)[j];
-        joint.high[k] = bench.config(first + kLanesDouble + k)[j];
-      }
-    }
-    const unsigned near = lanes_near(bench.scene(i++), q, pad_m);
-    num_clear += kLanesFloat - __builtin_popcount(near);
-  }
-  count_configurations(state, kLanesFloat, num_clear);
-}
-BENCHMARK(arm_lanes);
-
-// What the sampler asks: a motion, here one so short that a single turn decides. Its eight middles
-// are close together; exact where the lanes are not enough, pairs of links included.
-void arm_motion(benchmark::State& state) {
-  const ArmBench bench;
-  if (!bench.is_present(state)) return;
-  std::size_t i = 0;
-  std::int64_t num_clear = 0;
-  for (auto _ : state) {
-    const auto& scene = bench.scene(i);
-    const ArmBench::Config& q = bench.config(i++);
-    const bool clear = motion_is_clear(scene.arm, *scene.world, rule_of(scene.options),
-                                       kSelfClearance_m, q, q + ArmBench::Config::Constant(1e-5));
-    num_clear += clear ? kLanesFloat : 0;
-  }
-  count_configurations(state, kLanesFloat, num_clear);
-}
-BENCHMARK(arm_motion);
 
 }  // namespace
 }  // namespace sopt

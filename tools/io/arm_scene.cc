@@ -17,7 +17,7 @@ std::string robots_allowed() {
          ") or any name together with robot_file";
 }
 
-// The same arm with its base at X_WB and other limits of its joints.
+// The same arm with its base at X_WB and other limits and weights of its joints.
 template <int N>
 Arm<N> rebuilt(const Arm<N>& arm, const Pose3& X_WB, const std::array<ArmJoint, N>& joints) {
   ArmPose<N> pose;
@@ -92,13 +92,25 @@ void read_limits(const JsonField& limits, const std::vector<std::string>& names,
 }
 
 template <int N>
+void read_weights(const JsonField& weights, std::array<ArmJoint, N>& joints) {
+  static constexpr const char* kAllowed = "null or a number from 0.001 to 1000";
+  weights.check_array(N, N, "an array of " + std::to_string(N) + ", one per free joint");
+  for (std::size_t j = 0; j < N; ++j) {
+    const JsonField element = weights[j];
+    if (element.value().is_null()) continue;
+    joints[j].weight = element.number({kJointWeight.lowest, kJointWeight.highest, kAllowed});
+  }
+}
+
+template <int N>
 void read_arm(const JsonField& root, const NamedArm<N>& named, ArmScene<N>& scene) {
   scene.arm = named.arm;
   scene.joint_names = named.joint_names;
   scene.link_names = named.link_names;
   const std::optional<JsonField> base = root.find("base");
   const std::optional<JsonField> limits = root.find("limits");
-  if (!base && !limits) return;
+  const std::optional<JsonField> weights = root.find("joint_weights");
+  if (!base && !limits && !weights) return;
   Pose3 X_WB = named.arm.kinematics().X_WB;
   std::array<ArmJoint, N> joints;
   for (int j = 0; j < N; ++j) joints[static_cast<std::size_t>(j)] = named.arm.joint(j);
@@ -110,6 +122,7 @@ void read_arm(const JsonField& root, const NamedArm<N>& named, ArmScene<N>& scen
     }
   }
   if (limits) read_limits<N>(*limits, named.joint_names, joints);
+  if (weights) read_weights<N>(*weights, joints);
   scene.arm = rebuilt<N>(named.arm, X_WB, joints);
 }
 
@@ -271,7 +284,7 @@ AnyScene load_any_scene(const std::filesystem::path& file, const std::string& ro
   }
   root.check_fields({"name", "robot", "robot_file", "joints", "locked_joints", "base", "start",
                      "goal", "obstacles", "speed", "dt", "margin", "min_clearance", "limits",
-                     "start_velocity", "goal_velocity"},
+                     "joint_weights", "start_velocity", "goal_velocity"},
                     is_documentary_in_scene);
   const SceneRobot chosen = robot.empty() ? SceneRobot{own.text(), read_robot(root, file)}
                                           : read_replacement(root, file, robot);

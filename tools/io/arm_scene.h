@@ -5,11 +5,11 @@
 // speed (rad/s), dt, margin, min_clearance, start_velocity and goal_velocity (zeros), limits
 // {lower, upper, v_max, a_max}: arrays in the order of start, null where the robot's own limit
 // holds; they may narrow what the robot allows, and give accelerations freely, which few robots
-// publish. Obstacles: box {size}, cylinder {radius, height along local z}, sphere {radius}, all
-// with position and quaternion_xyzw (absent: not turned); capsule {p0, p1, radius}; hull
-// {vertices}, the convex hull of 4 to 32 points. A start or goal outside the limits by at most
-// kLimitSlack is moved onto them: published files round. Further outside is an error of the file; a
-// collision is the planner's to answer.
+// publish; joint_weights, likewise, of the path metric (ArmJoint::weight). Obstacles: box {size},
+// cylinder {radius, height along local z}, sphere {radius}, all with position and quaternion_xyzw
+// (absent: not turned); capsule {p0, p1, radius}; hull {vertices}, the convex hull of 4 to 32
+// points. A start or goal outside the limits by at most kLimitSlack is moved onto them: published
+// files round. Further outside is an error of the file; a collision is the planner's to answer.
 #pragma once
 
 #include <variant>

@@ -5,7 +5,6 @@
 #include "models/config.h"
 #include "models/space/pose3.h"
 #include "tools/io/input_error.h"
-#include "tools/io/json_fields.h"
 #include "tools/io/scene_fields.h"
 
 namespace sopt {
@@ -65,11 +64,11 @@ void check_joint_fields(const JsonField& field, ModelJointKind kind) {
   const std::initializer_list<std::string_view> kFixed = {
       "name", "type", "parent", "child", "xyz", "rpy", "origin_xyz", "origin_rpy"};
   const std::initializer_list<std::string_view> kContinuous = {
-      "name",       "type",       "parent", "child",    "xyz",          "rpy",
-      "origin_xyz", "origin_rpy", "axis",   "velocity", "acceleration", "effort"};
+      "name",       "type", "parent",   "child",        "xyz",    "rpy",   "origin_xyz",
+      "origin_rpy", "axis", "velocity", "acceleration", "effort", "weight"};
   const std::initializer_list<std::string_view> kLimited = {
-      "name",       "type", "parent", "child", "xyz",      "rpy",          "origin_xyz",
-      "origin_rpy", "axis", "lower",  "upper", "velocity", "acceleration", "effort"};
+      "name", "type",  "parent", "child",    "xyz",          "rpy",    "origin_xyz", "origin_rpy",
+      "axis", "lower", "upper",  "velocity", "acceleration", "effort", "weight"};
   const bool is_fixed = kind == ModelJointKind::kFixed;
   const bool is_continuous = kind == ModelJointKind::kContinuous;
   field.check_fields(is_fixed        ? kFixed
@@ -99,6 +98,7 @@ void read_motion(const JsonField& field, ModelJoint& joint) {
   joint.v_max = field.number_at("velocity", kPositive);
   joint.a_max =
       field.find_number("acceleration", kPositive).value_or(kAccelerationPerVelocity * joint.v_max);
+  joint.weight = field.find_number("weight", kJointWeight).value_or(joint.weight);
 }
 
 // Index of a link's name, which is added when `may_add`.
@@ -234,6 +234,7 @@ nlohmann::ordered_json joint_to_json(const ModelJoint& joint, const RobotModel& 
   }
   json["velocity"] = joint.v_max;
   json["acceleration"] = joint.a_max;
+  if (joint.weight != 1.0) json["weight"] = joint.weight;
   return json;
 }
 

@@ -201,6 +201,7 @@ void check_base(const RobotModel& model, const std::string& name, const ArmJoint
     case ArmStatus::kBadLimits:
     case ArmStatus::kBadRate:
     case ArmStatus::kBadRadius:
+    case ArmStatus::kBadWeight:
       break;  // checked field by field before
   }
   fail(model, "is not an arm");
@@ -282,7 +283,8 @@ NamedArm<N> make_arm(const RobotModel& model, const JointChoice& choice) {
                                  joint.lower,
                                  joint.upper,
                                  joint.v_max,
-                                 joint.a_max};
+                                 joint.a_max,
+                                 joint.weight};
     named.link_names.push_back(model.links[at(joint.i_child)]);
   }
   check_base(model, named.joint_names[0], description.joints[0]);

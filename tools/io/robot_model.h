@@ -31,6 +31,7 @@ struct ModelJoint {
   double upper = 0.0;
   double v_max = 0.0;  // of all but fixed joints; > 0
   double a_max = 0.0;
+  double weight = 1.0;  // of the path metric (ArmJoint::weight)
 };
 
 struct ModelCapsule {

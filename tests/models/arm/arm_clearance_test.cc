@@ -73,7 +73,7 @@ TEST(ArmClearance, FindsEveryContactWithinTheRadiusAndNoOther) {
         for_each_contact(s.drawn.arm, s.world.world, s.pose, radius_m, [&](const ArmContact& c) {
           EXPECT_GE(c.i_link, last_link);
           last_link = c.i_link;
-          EXPECT_EQ(c.i_other_link, -1);
+          EXPECT_EQ(c.i_other_link, kNoLink);
           EXPECT_NEAR(c.clearance.distance_m, link_distance(s, c.i_link, c.i_obstacle), kTol_m);
           seen.at(std::size_t(c.i_link)).at(std::size_t(c.i_obstacle)) = true;
           ++num_found;

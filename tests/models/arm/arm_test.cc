@@ -221,6 +221,27 @@ TEST_F(ArmTest, ContinuousJointsTakeTheShortWay) {
   EXPECT_TRUE(arm_.within_limits({1e6, 0, 0, 0}));
 }
 
+TEST_F(ArmTest, JointsCountByTheirWeightsInThePathMetric) {
+  description_.joints[1].kind = JointKind::kContinuous;
+  description_.joints[1].lower = -kInfinity;
+  description_.joints[1].upper = kInfinity;
+  const Arm<4>::Config a(0.0, 3.0, 0.0, 0.5);
+  const Arm<4>::Config b(1.0, -3.0, -1.0, 0.5);
+  const double turn = 2.0 * kPi - 6.0;
+  ASSERT_EQ(reset(), ArmStatus::kOk);
+  EXPECT_EQ(arm_.weights(), Arm<4>::Config::Ones());
+  EXPECT_NEAR(arm_.path_distance(a, b), std::hypot(1.0, turn, 1.0), 1e-15);
+  const double weights[] = {1e-3, 2.0, 3.0, 1e3};
+  for (std::size_t j = 0; j < 4; ++j) description_.joints[j].weight = weights[j];
+  ASSERT_EQ(reset(), ArmStatus::kOk);
+  EXPECT_EQ(arm_.weights(), Arm<4>::Config(1e-3, 2.0, 3.0, 1e3));
+  EXPECT_NEAR(arm_.path_distance(a, b), std::hypot(1e-3, 2.0 * turn, 3.0), 1e-15);
+  EXPECT_NEAR(arm_.path_distance(b, a), std::hypot(1e-3, 2.0 * turn, 3.0), 1e-15);
+  EXPECT_NEAR(arm_.motion_length({0, 0, 0, 0.25}), 250.0, 1e-12);
+  // The way itself does not change.
+  EXPECT_EQ(arm_.interpolate(a, b, 0.5)[2], -0.5);
+}
+
 TEST_F(ArmTest, NamesTheJointOutsideItsLimits) {
   ASSERT_EQ(reset(), ArmStatus::kOk);
   EXPECT_EQ(arm_.joint_outside_limits({-2, 2, 0, 0}), kNoJoint);
@@ -265,6 +286,9 @@ TEST_F(ArmTest, RefusesEachBrokenRule) {
   refuses(ArmStatus::kBadLimits, [&] { joint.kind = JointKind::kContinuous; });
   refuses(ArmStatus::kBadRate, [&] { joint.v_max = 0.0; });
   refuses(ArmStatus::kBadRate, [&] { joint.a_max = -1.0; });
+  for (const double weight : {0.0, -1.0, 0.9e-3, 1.1e3, kInfinity, kNan}) {
+    refuses(ArmStatus::kBadWeight, [&] { joint.weight = weight; });
+  }
   refuses(ArmStatus::kBadRadius, [&] { capsules_[0].radius_m = -1e-9; });
   refuses(ArmStatus::kBadLink, [&] { capsules_[0].i_link = 5; });
   refuses(ArmStatus::kBadLink, [&] { capsules_[0].i_link = -1; });

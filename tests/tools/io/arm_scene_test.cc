@@ -213,6 +213,20 @@ TEST_F(ArmSceneTest, LimitsReplaceTheRobotsWhereTheyAreNumbers) {
   EXPECT_EQ(scene.arm.num_capsules(), 1);
 }
 
+TEST_F(ArmSceneTest, WeightsReplaceTheRobotsWhereTheyAreNumbers) {
+  EXPECT_EQ(load_file().arm.weights(), Eigen::Vector4d::Ones());
+  json robot = json::parse(kRobot);
+  robot["joints"][0]["weight"] = 2.5;
+  robot["joints"][1]["weight"] = 0.5;
+  write("robots/crane.json", robot.dump());
+  EXPECT_EQ(load_file().arm.weights(), Eigen::Vector4d(2.5, 0.5, 1, 1));
+  file_["joint_weights"] = json::parse("[null, 3, 0.001, 1000]");
+  EXPECT_EQ(load_file().arm.weights(), Eigen::Vector4d(2.5, 3, 0.001, 1000));
+  file_["base"] = {{"position", {1, 2, 3}}};
+  file_["limits"] = json::parse(R"({"v_max": [null, 0.5, null, null]})");
+  EXPECT_EQ(load_file().arm.weights(), Eigen::Vector4d(2.5, 3, 0.001, 1000));
+}
+
 TEST_F(ArmSceneTest, APresetInPlaceOfTheRobotHasAllItsJoints) {
   file_["start"] = file_["goal"] = {0, 0.1, 0.1, 0, 0};
   const AnyScene scene = load_any_scene(write("scene.json", file_.dump()), "xarm5");

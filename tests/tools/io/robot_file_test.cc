@@ -260,6 +260,7 @@ TEST_F(RobotFileTest, WrittenFilesReadTheSame) {
   json_["joints"][3]["type"] = "continuous";
   json_["joints"][3].erase("lower");
   json_["joints"][3].erase("upper");
+  json_["joints"][1]["weight"] = 0.3;
   json_["self_collision_link_pairs"] =
       nlohmann::json::parse(R"([["hand", "base"], ["four", "two"]])");
   const RobotModel model = load();
@@ -272,6 +273,7 @@ TEST_F(RobotFileTest, WrittenFilesReadTheSame) {
     EXPECT_EQ(copy.joints[j].kind, model.joints[j].kind);
     EXPECT_EQ(copy.joints[j].lower, model.joints[j].lower);
     EXPECT_EQ(copy.joints[j].a_max, model.joints[j].a_max);
+    EXPECT_EQ(copy.joints[j].weight, j == 1 ? 0.3 : 1.0);
     EXPECT_EQ(copy.joints[j].origin.position, model.joints[j].origin.position);
     EXPECT_LT((copy.joints[j].origin.rotation - model.joints[j].origin.rotation).norm(), 1e-15);
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "opt/reference.h"
+#include "opt/step_measure.h"
 #include "opt/time_scaling.h"
 #include "tests/support/arm_segment.h"
 #include "tests/support/rt_guard.h"
@@ -67,7 +68,9 @@ TYPED_TEST(ArmReferenceTest, IsExactAndWithinAllLimits) {
     // Continuous joints may wind up; their limits are infinite.
     EXPECT_LE(facts.limit_excess, 0.0) << seed;
     for (const auto& state : z) {
-      EXPECT_LE(state.template tail<kDof>().norm(), kStep / kDt_s * (1.0 + 1e-12)) << seed;
+      EXPECT_LE(oracle::weighted_length<kDof>(arm, state.template tail<kDof>()),
+                kStep / kDt_s * (1.0 + 1e-12))
+          << seed;
     }
     EXPECT_TRUE((z.front().template head<kDof>() == this->way_.front()));
     EXPECT_TRUE(z.front().template tail<kDof>().isZero(0.0));
@@ -124,7 +127,7 @@ TYPED_TEST(ArmReferenceTest, TakesNoMoreStepsThanItNeeds) {
     const auto way = arm.difference(motion[0], motion[1]);
     double reach = 0.0;
     for (int k = 1; k < n - 1; ++k) {
-      double rate = kStep / way.norm();
+      double rate = kStep / oracle::weighted_length<kDof>(arm, way);
       for (int j = 0; j < kDof; ++j) {
         const double d = std::abs(way[j]);
         rate = std::min({rate, arm.v_max()[j] * kDt_s / d,
@@ -182,7 +185,7 @@ TYPED_TEST(ArmReferenceTest, ScaledTimeKeepsWaypointsDynamicsAndLimits) {
     auto& trajectory = this->out_.trajectory;
     make_arm_reference(arm, this->way_, kStep, kDt_s, trajectory);
     const States<kDof> before = states_of(trajectory);
-    const double length = path_length(trajectory);
+    const double length = path_length(arm, trajectory);
     if (length == 0.0) continue;
     // Shorter by half: asked to go at twice the speed.
     scale_time(arm, 2.0 * length, trajectory);
@@ -211,7 +214,7 @@ TYPED_TEST(ArmReferenceTest, ScaledTimeIsTheLengthsRatioWhereLimitsAllowIt) {
   trajectory.dt_s *= 2.0;  // the same at half the speed
   for (auto& z : trajectory.states) z.template tail<kDof>() *= 0.5;
   const States<kDof> before = states_of(trajectory);
-  scale_time(this->drawn_.arm, 1.25 * path_length(trajectory), trajectory);
+  scale_time(this->drawn_.arm, 1.25 * path_length(this->drawn_.arm, trajectory), trajectory);
   EXPECT_NEAR(trajectory.dt_s, 0.8 * 2.0 * kDt_s, 1e-12);
   for (std::size_t t = 0; t < before.size(); ++t) {
     const auto& z = trajectory.states[static_cast<int>(t)];
@@ -228,7 +231,7 @@ TYPED_TEST(ArmReferenceTest, TouchesNoHeap) {
   auto& trajectory = this->out_.trajectory;
   const auto run = [&] {
     bool fits = make_reference(this->drawn_.arm, path, kStep, kDt_s, trajectory);
-    scale_time(this->drawn_.arm, path_length(trajectory), trajectory);
+    scale_time(this->drawn_.arm, path_length(this->drawn_.arm, trajectory), trajectory);
     return fits && fill_inputs(trajectory);
   };
   if (!RtGuard::available()) GTEST_SKIP() << "this build cannot count allocations";

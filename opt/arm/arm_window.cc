@@ -189,7 +189,7 @@ void WindowOptimizer<Arm<N>>::linearize(const SweepProblem<Robot>& problem,
             : q;
     finder_.find(q, rule, radius_m, self_radius_m, gaps_[t],
                  [&](const ArmPose<N>& pose, const ArmContact& contact) {
-                   const double kept_m = contact.i_other_link >= 0
+                   const double kept_m = contact.i_other_link != kNoLink
                                              ? kSelfRow_m
                                              : problem.world->required_m(contact.i_obstacle, rule);
                    rows_.add(t, at, contact_gradient(*problem.robot, pose, contact),
@@ -224,6 +224,7 @@ ArmSegment<N> WindowOptimizer<Arm<N>>::make_segment(const SweepProblem<Robot>& p
   segment.upper = upper_.span();
   segment.v_max = robot.v_max() * (dt_s * kLimitGuard);
   segment.a_max = robot.a_max() * (dt_s * dt_s * kLimitGuard);
+  segment.factors = robot.weights().cwiseAbs2();
   return segment;
 }
 

@@ -41,7 +41,8 @@ QpResult<double> DenseArmQp<N>::solve(const ArmSegment<N>& segment, double softn
   return result;
 }
 
-// 1/2 sum_{0 < t < n} |v_t|^2 + w/2 sum |a_t|^2 in the inputs; v_n is fixed by an equality.
+// 1/2 sum_j r_j (sum_{0 < t < n} v_tj^2 + w sum_t a_tj^2) in the inputs; v_n is fixed by an
+// equality.
 template <int N>
 void DenseArmQp<N>::factorize(const ArmSegment<N>& segment) SOPT_RT {
   const int n = segment.num_steps;
@@ -50,10 +51,12 @@ void DenseArmQp<N>::factorize(const ArmSegment<N>& segment) SOPT_RT {
   for (int s = 0; s < n; ++s) {
     for (int r = 0; r < n; ++r) {
       const double h = n - 1 - std::max(s, r) + (s == r ? kArmInputWeight : 0.0);
-      for (int j = 0; j < N; ++j) hessian_[(N * s + j) * num_inputs + N * r + j] = h;
+      for (int j = 0; j < N; ++j) {
+        hessian_[(N * s + j) * num_inputs + N * r + j] = h * segment.factors[j];
+      }
     }
     for (int j = 0; j < N; ++j) {
-      gradient_[N * s + j] = (n - 1 - s) * segment.first_velocity[j];
+      gradient_[N * s + j] = (n - 1 - s) * segment.first_velocity[j] * segment.factors[j];
     }
   }
   (void)rows_.factorize(num_inputs, hessian_.begin());

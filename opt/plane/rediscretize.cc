@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "opt/time_scaling.h"
+#include "opt/step_measure.h"
 
 namespace sopt {
 
@@ -11,7 +11,7 @@ bool rediscretize(double step_length, Trajectory<Point2>& trajectory) SOPT_RT {
   auto& states = trajectory.states;
   const int old_horizon = trajectory.horizon();
   // Rounding must not add a step to a path of whole steps.
-  const double wanted = std::ceil(path_length(trajectory) / step_length - 1e-9);
+  const double wanted = std::ceil(path_length(Point2{}, trajectory) / step_length - 1e-9);
   const int horizon = static_cast<int>(std::clamp(wanted, 2.0, states.capacity() - 1.0));
   if (horizon == old_horizon) return false;
   const Vec2 last = states.back();

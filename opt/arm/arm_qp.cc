@@ -55,6 +55,7 @@ bool ArmQp<N>::load(const ArmSegment<N>& segment) SOPT_RT {
   ends.last_position = segment.last_position.data();
   ends.first_velocity = segment.first_velocity.data();
   ends.last_velocity = segment.last_velocity.data();
+  ends.factors = segment.factors.data();
   rows_.reset(ends);
   for (int t = 1; t < n; ++t) {
     const auto i = static_cast<std::size_t>(t);

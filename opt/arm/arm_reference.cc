@@ -1,7 +1,7 @@
 // Rest-to-rest motions of arms. Along a motion of the path d = b - a the share sigma in [0, 1] has
 // rate and acceleration limits of its own,
-//     rate <= v = min(speed / |d|, min_j v_max_j / |d_j|),   |acceleration| <= a = min_j a_max_j /
-//     |d_j|
+//     rate <= v = min(speed / |d|, min_j v_max_j / |d_j|)     |d| in the path metric
+//     |acceleration| <= a = min_j a_max_j / |d_j|
 // and on a grid of n steps, in step units, the largest rates from rest to rest at waypoints
 // 0 < k < n are min(a k, v, a (n - k)). n is the least with a sum of at least 1; all rates are then
 // multiplied by what makes it 1, which keeps every limit. sigma is the running mean of neighbouring
@@ -39,7 +39,7 @@ template <int N>
 ShareLimits limits_of(const Arm<N>& robot, const typename Arm<N>::Config& way, double step_length,
                       double dt_s) noexcept {
   ShareLimits limits;  // 1: one step
-  limits.rate = std::min(1.0, step_length / way.norm());
+  limits.rate = std::min(1.0, step_length / robot.motion_length(way));
   for (int j = 0; j < N; ++j) {
     const double travel = std::abs(way[j]);
     limits.rate = std::min(limits.rate, kLimitGuard * robot.v_max()[j] * dt_s / travel);

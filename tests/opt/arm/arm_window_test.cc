@@ -64,7 +64,7 @@ class ArmWindowTest : public ::testing::Test {
   }
   [[nodiscard]] double cost(const Window& window) const {
     const States part(states_.begin() + window.first, states_.begin() + window.last + 1);
-    return oracle::arm_cost<kDof>(part, kDt_s, kStep);
+    return oracle::arm_cost(robot_, part, kDt_s, kStep);
   }
   void expect_valid(const char* what) const {
     const auto facts = oracle::examine(robot_, test_.world, states_, kDt_s, 16);

@@ -26,6 +26,7 @@ struct ArmSegment {
   std::span<const ArmRow<N>> rows;
   std::span<const Config> lower, upper;  // positions, by waypoint
   Config v_max, a_max;
+  Config factors;  // r_j of the joints' costs: their squared weights in the path metric
 };
 
 template <int N>

@@ -1,8 +1,9 @@
 // The QP of one arm window, in step units (omega dt, alpha dt^2):
-//     min 1/2 sum |v_t|^2 + 2 |a_t|^2   s.t. both ends fixed, the window's rows (opt/arm_rows.h),
-//     lower_t <= q_t <= upper_t,  |v_t| <= v_max,  |a_t| <= a_max
-// over the double integrator's kernel (opt/qp/kernel_rows.h). Soft: rows, but not bounds, may be
-// violated at a quadratic cost, softness 1e-4 of the largest gram diagonal.
+//     min 1/2 sum_t sum_j r_j (v_tj^2 + 2 a_tj^2)   s.t. both ends fixed, the window's rows
+//     (opt/arm_rows.h), lower_t <= q_t <= upper_t,  |v_t| <= v_max,  |a_t| <= a_max
+// r_j is the squared weight of joint j in the path metric. Over the double integrator's kernel
+// (opt/qp/kernel_rows.h). Soft: rows, but not bounds, may be violated at a quadratic cost, softness
+// 1e-4 of the largest gram diagonal.
 #pragma once
 
 #include <span>
