@@ -30,6 +30,13 @@ inline constexpr int kLanesFloat = 8;
   std::memcpy(&v, from, sizeof v);
   return v;
 }
+// Three numbers and a lane that nobody reads.
+[[gnu::always_inline]] inline V4d load3(const double* from) noexcept {
+  return V4d{from[0], from[1], from[2], 0.0};
+}
+[[gnu::always_inline]] inline void store3(V4d v, double* to) noexcept {
+  std::memcpy(to, &v, 3 * sizeof(double));
+}
 [[gnu::always_inline]] inline V4d splat4(double s) noexcept { return V4d{s, s, s, s}; }
 [[gnu::always_inline]] inline V8f splat8(float s) noexcept { return V8f{s, s, s, s, s, s, s, s}; }
 

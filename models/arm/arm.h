@@ -81,7 +81,7 @@ class Arm {
   [[nodiscard]] Capsule3 capsule_W(const Pose& pose, int i_capsule) const SOPT_RT {
     const Capsule3& c = capsules_[at(i_capsule)];
     const Pose3& X = pose.X_WJ[at(link_of_[at(i_capsule)])];
-    return {X.rotation * c.p0 + X.position, X.rotation * c.p1 + X.position, c.radius_m};
+    return {transform(X, c.p0), transform(X, c.p1), c.radius_m};
   }
   // Contains the link's capsules; meaningless for a link without.
   [[nodiscard]] Sphere3 link_sphere_W(const Pose& pose, int i_link) const SOPT_RT {
@@ -239,7 +239,7 @@ class Arm {
   }
   [[nodiscard]] static Sphere3 to_world(const Pose& pose, int i_link, const Sphere3& s) SOPT_RT {
     const Pose3& X = pose.X_WJ[at(i_link)];
-    return {X.rotation * s.center + X.position, s.radius_m};
+    return {transform(X, s.center), s.radius_m};
   }
   void fold_frames(const Pose3& X_WB) noexcept;
   [[nodiscard]] ArmStatus rebuild() noexcept;  // all below from sources_ and source_pairs_

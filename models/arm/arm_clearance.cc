@@ -42,7 +42,7 @@ template <int N>
     const auto cover = arm.cover(i_capsule);
     if (std::none_of(cover.begin(), cover.end(), [&](const CoverSphere& s) {
           const Vec3 center = Eigen::Vector3f(s.center[0], s.center[1], s.center[2]).cast<double>();
-          const Sphere3 sphere{X.rotation * center + X.position, static_cast<double>(s.radius_m)};
+          const Sphere3 sphere{transform(X, center), static_cast<double>(s.radius_m)};
           return may_be_within(obstacle, sphere, radius_m);
         })) {
       return false;
@@ -136,7 +136,7 @@ bool is_clear(const Arm<N>& arm, const World3& world, const ArmPose<N>& pose,
   const Pose3& tip = pose.X_WJ[N];  // the others' product: finite only if they are
   if (!std::isfinite(tip.rotation.col(0).sum() + tip.position.sum())) return false;
   const double reach_m = world.max_required_m(rule);
-  for (int l = 0; l <= N; ++l) {
+  for (int l = N; l >= 0; --l) {  // the outer links meet more
     const int first = arm.first_capsule(l);
     const int last = arm.first_capsule(l + 1);
     if (first == last) continue;

@@ -10,14 +10,6 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-// Three components and a lane that nobody reads.
-[[gnu::always_inline]] inline V4d lanes(const double* xyz) noexcept {
-  return V4d{xyz[0], xyz[1], xyz[2], 0.0};
-}
-[[gnu::always_inline]] inline void store3(V4d v, double* xyz) noexcept {
-  std::memcpy(xyz, &v, 3 * sizeof(double));
-}
-
 // Four joints from kFirst on, zeros beyond the last; in registers, as vectors that were stored
 // number by number are slow to load.
 template <int kFirst, class Config>
@@ -50,10 +42,10 @@ void Arm<N>::forward(const Config& q, Pose& pose) const SOPT_RT {
   alignas(32) double cosine[kMaxArmJoints];
   sin_cos_lanes<0>(k.offset, k.turns, q, sine, cosine);
   if constexpr (N > kLanesDouble) sin_cos_lanes<kLanesDouble>(k.offset, k.turns, q, sine, cosine);
-  V4d x = lanes(k.X_WJ1.rotation.data());
-  V4d y = lanes(k.X_WJ1.rotation.data() + 3);
-  V4d z = lanes(k.X_WJ1.rotation.data() + 6);
-  V4d p = lanes(k.X_WJ1.position.data());
+  V4d x = load3(k.X_WJ1.rotation.data());
+  V4d y = load3(k.X_WJ1.rotation.data() + 3);
+  V4d z = load3(k.X_WJ1.rotation.data() + 6);
+  V4d p = load3(k.X_WJ1.position.data());
   pose.X_WJ[0] = k.X_WB;
   for (int j = 0; j < N; ++j) {
     if (j > 0) {

@@ -14,10 +14,6 @@ namespace sopt {
   return {a.rotation * b.rotation, a.rotation * b.position + a.position};
 }
 
-[[nodiscard]] inline Vec3 transform(const Pose3& pose, const Vec3& p) SOPT_RT {
-  return pose.rotation * p + pose.position;
-}
-
 // Orthonormal within 1e-9 and right-handed; NaN is not.
 [[nodiscard]] inline bool is_rotation(const Mat3& rotation) SOPT_RT {
   constexpr double kTolerance = 1e-9;
