@@ -6,7 +6,7 @@
 #include <new>
 #include <type_traits>
 
-#include "opt/rediscretize.h"
+#include "opt/plane/rediscretize.h"
 #include "opt/step_measure.h"
 #include "opt/time_scaling.h"
 

@@ -1,7 +1,7 @@
 // What a window of a sweep is asked for and what it answers, the same for every robot, and the
-// window optimisers' common name: opt/window_optimizer.h for the point, opt/arm_window.h for arms.
-// Each has a type `Shared`, built once and read by all workers, and a constructor
-// (Arena&, const PlannerSettings&, const Shared&).
+// window optimisers' common name: opt/plane/point_window.h for the point, opt/arm/arm_window.h for
+// arms. Each has a type `Shared`, built once and read by all workers, and a constructor (Arena&,
+// const PlannerSettings&, const Shared&).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "opt/arm_gaps.h"
+#include "opt/arm/arm_gaps.h"
 
 namespace sopt {
 

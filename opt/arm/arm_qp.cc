@@ -1,4 +1,4 @@
-#include "opt/arm_qp.h"
+#include "opt/arm/arm_qp.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // The QP of one arm window, in step units (omega dt, alpha dt^2):
 //     min 1/2 sum_t sum_j r_j (v_tj^2 + 2 a_tj^2)   s.t. both ends fixed, the window's rows
-//     (opt/arm_rows.h), lower_t <= q_t <= upper_t,  |v_t| <= v_max,  |a_t| <= a_max
+//     (opt/arm/arm_rows.h), lower_t <= q_t <= upper_t,  |v_t| <= v_max,  |a_t| <= a_max
 // r_j is the squared weight of joint j in the path metric. Over the double integrator's kernel
 // (opt/qp/kernel_rows.h). Soft: rows, but not bounds, may be violated at a quadratic cost, softness
 // 1e-4 of the largest gram diagonal.
@@ -9,8 +9,8 @@
 #include <span>
 
 #include "models/config.h"
-#include "opt/arm_rows.h"
-#include "opt/dense_arm_qp.h"
+#include "opt/arm/arm_rows.h"
+#include "opt/arm/dense_arm_qp.h"
 #include "opt/qp/active_set_qp.h"
 #include "opt/qp/kernel_rows.h"
 #include "rt/annotations.h"

@@ -1,4 +1,4 @@
-#include "opt/arm_rows.h"
+#include "opt/arm/arm_rows.h"
 
 #include <algorithm>
 

@@ -10,9 +10,9 @@
 // that this does not decide. The profile is fixed, so that nothing erodes over sweeps.
 #pragma once
 
-#include "opt/arm_gaps.h"
-#include "opt/arm_qp.h"
-#include "opt/arm_rows.h"
+#include "opt/arm/arm_gaps.h"
+#include "opt/arm/arm_qp.h"
+#include "opt/arm/arm_rows.h"
 #include "opt/splits.h"
 #include "opt/sweep_problem.h"
 #include "rt/annotations.h"

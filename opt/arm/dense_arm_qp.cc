@@ -1,4 +1,4 @@
-#include "opt/dense_arm_qp.h"
+#include "opt/arm/dense_arm_qp.h"
 
 #include <algorithm>
 #include <limits>

@@ -2,12 +2,12 @@
 //     v_t = v_0 + sum_{s<t} a_s,   q_t = q_0 + t v_0 + sum_{s<t} (t - s - 1/2) a_s
 // with a dense Hessian over all joints, factorised in every window although it is the same for all
 // of them: the paper's solver does not know that. O((n N)^3) per window. Same solution as the
-// kernel's (opt/arm_qp.h).
+// kernel's (opt/arm/arm_qp.h).
 #pragma once
 
 #include <span>
 
-#include "opt/arm_rows.h"
+#include "opt/arm/arm_rows.h"
 #include "opt/qp/active_set_qp.h"
 #include "opt/qp/dense_rows.h"
 #include "opt/qp/kernel_rows.h"

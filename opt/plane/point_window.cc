@@ -1,9 +1,9 @@
-#include "opt/window_optimizer.h"
+#include "opt/plane/point_window.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "opt/waypoint_rows.h"
+#include "opt/plane/waypoint_rows.h"
 
 namespace sopt {
 namespace {

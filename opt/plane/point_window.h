@@ -10,8 +10,8 @@
 
 #include "models/config.h"
 #include "models/plane/point2.h"
-#include "opt/dense_window.h"
-#include "opt/obstacle_rows.h"
+#include "opt/plane/dense_window.h"
+#include "opt/plane/obstacle_rows.h"
 #include "opt/qp/active_set_qp.h"
 #include "opt/qp/point_rows.h"
 #include "opt/splits.h"

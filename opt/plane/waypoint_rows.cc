@@ -1,4 +1,4 @@
-#include "opt/waypoint_rows.h"
+#include "opt/plane/waypoint_rows.h"
 
 #include <cmath>
 

@@ -4,7 +4,8 @@
 // of every obstacle within trust_m + b, or of the nearest one alone. The latter is the role of the
 // paper's watershed: it labels free space by the nearest obstacle. Deviation: here the nearest
 // obstacle is found exactly, not on a grid of pixels. Nothing keeps the motion between waypoints
-// clear, nor, with one obstacle, the waypoint itself from the others: opt/obstacle_rows.h does.
+// clear, nor, with one obstacle, the waypoint itself from the others: opt/plane/obstacle_rows.h
+// does.
 #pragma once
 
 #include <cstdint>

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "opt/arm_window.h"
+#include "opt/arm/arm_window.h"
 #include "tests/support/arm_planner_fixture.h"
 #include "tests/support/test_problem.h"
 

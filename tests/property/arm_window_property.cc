@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-#include "opt/arm_window.h"
+#include "opt/arm/arm_window.h"
 #include "tests/support/arm_cases.h"
 #include "tests/support/arm_segment.h"
 #include "tests/support/property.h"

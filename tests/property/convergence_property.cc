@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "opt/obstacle_rows.h"
+#include "opt/plane/obstacle_rows.h"
 #include "opt/segmented_optimizer.h"
 #include "opt/time_scaling.h"
 #include "tests/support/convergence_oracle.h"

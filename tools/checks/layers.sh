@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Dependencies between folders go one way:
-#   rt -> alloc -> models -> {sampler, opt/qp -> opt core, opt/verify} -> opt/planner -> tools -> tests
+#   rt -> alloc -> models -> {sampler, opt/qp -> opt, opt/verify} -> opt/planner -> tools -> tests
 # in models: {plane, space} -> arm, what lies above the rooms is used by all;
+# in opt: likewise, then {plane, arm} -> segmented_optimizer;
 # and in tools: io -> {cli -> qp, scenes} -> bench -> {tables, peers} -> main and the commands.
 # Every #include "..." names a file by its path from the project's root, and that file may be used
 # from the including file's layer. Prints each violation; exit code 1 when there is one.
@@ -15,6 +16,8 @@ layer_of() {
     models/*/*) echo "$(cut -d/ -f1,2 <<<"$1")" ;;
     opt/qp/*) echo qp ;;
     opt/verify/*) echo verify ;;
+    opt/plane/*|opt/arm/*) echo "$(cut -d/ -f1,2 <<<"$1")" ;;
+    opt/segmented_optimizer.*) echo sweeps ;;
     opt/planner.*) echo planner ;;
     tools/*/*) echo "$(cut -d/ -f1,2 <<<"$1")" ;;
     *) echo "${1%%/*}" ;;
@@ -22,7 +25,8 @@ layer_of() {
 }
 
 models="rt alloc models models/plane models/space models/arm"
-libraries="$models sampler qp opt verify planner"
+windows="qp opt opt/plane opt/arm sweeps"
+libraries="$models sampler $windows verify planner"
 tool_rooms="tools/io tools/cli tools/qp tools/scenes tools/bench tools/tables tools/peers"
 declare -A may_use=(
   [rt]="rt"
@@ -34,8 +38,11 @@ declare -A may_use=(
   [sampler]="$models sampler"
   [qp]="$models qp"
   [opt]="$models qp opt"
+  [opt/plane]="$models qp opt opt/plane"
+  [opt/arm]="$models qp opt opt/arm"
+  [sweeps]="$models $windows"
   [verify]="$models verify"
-  [planner]="$models sampler qp opt verify planner"
+  [planner]="$models sampler $windows verify planner"
   [tools/io]="$libraries tools/io"
   [tools/cli]="$libraries tools/io tools/cli"
   [tools/qp]="$libraries tools/io tools/cli tools/qp"

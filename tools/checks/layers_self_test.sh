@@ -5,9 +5,9 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
 
-mkdir -p "$tree"/{rt,models/{plane,arm},sampler,opt/verify,tests} "$tree"/tools/{io,scenes,bench,attic}
+mkdir -p "$tree"/{rt,models/{plane,arm},sampler,opt/{plane,arm,verify},tests} "$tree"/tools/{io,scenes,bench,attic}
 touch "$tree"/{rt/clock,models/plane/world2,models/arm/arm,sampler/sampler,tools/scene_file}.h
-touch "$tree"/opt/{splits,planner,verify/verify}.h
+touch "$tree"/opt/{splits,segmented_optimizer,planner,verify/verify,arm/arm_window}.h
 touch "$tree"/tools/{io/text,bench/report}.h
 touch "$tree/tests/guard.h"
 cat >"$tree/opt/planner.cc" <<'CC'
@@ -41,6 +41,9 @@ expect_refused models/plane/across.h '#include "models/arm/arm.h"'
 expect_refused models/up.h '#  include "sampler/sampler.h"'
 expect_refused sampler/across.cc '#include "opt/splits.h"'
 expect_refused opt/across.cc '#include "sampler/sampler.h"'
+expect_refused opt/room.cc '#include "opt/arm/arm_window.h"'
+expect_refused opt/plane/across.cc '#include "opt/arm/arm_window.h"'
+expect_refused opt/arm/up.cc '#include "opt/segmented_optimizer.h"'
 expect_refused opt/to_verify.cc '#include "opt/verify/verify.h"'
 expect_refused opt/verify/to_splits.cc '#include "opt/splits.h"'
 expect_refused opt/to_planner.cc '#include "opt/planner.h"'

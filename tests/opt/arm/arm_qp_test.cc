@@ -1,6 +1,6 @@
 // The QP of an arm's window: joints that weigh differently are the same as joints measured in
 // other units, and both solvers say so.
-#include "opt/arm_qp.h"
+#include "opt/arm/arm_qp.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "opt/arm_window.h"
+#include "opt/arm/arm_window.h"
 
 #include <gtest/gtest.h>
 

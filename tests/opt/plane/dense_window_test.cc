@@ -1,4 +1,4 @@
-#include "opt/dense_window.h"
+#include "opt/plane/dense_window.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "opt/obstacle_rows.h"
+#include "opt/plane/obstacle_rows.h"
 
 #include <gtest/gtest.h>
 

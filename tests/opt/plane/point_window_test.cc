@@ -1,4 +1,4 @@
-#include "opt/window_optimizer.h"
+#include "opt/plane/point_window.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "opt/rediscretize.h"
+#include "opt/plane/rediscretize.h"
 
 #include <gtest/gtest.h>
 
