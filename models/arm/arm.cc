@@ -97,12 +97,12 @@ void Arm<N>::fold_frames(const Pose3& X_WB) noexcept {
   for (int i = 0; i <= N; ++i) R_JL_[at(i)] = R_LJ[at(i)].transpose();
   for (int j = 0; j < N; ++j) {
     const Pose3& origin = joints_[at(j)].origin;
-    const Mat3 R = R_JL_[at(j)] * origin.rotation * R_LJ[at(j + 1)];
-    const Vec3 z = R.col(2);
+    const Mat3 R_JJ = R_JL_[at(j)] * origin.rotation * R_LJ[at(j + 1)];
+    const Vec3 z = R_JJ.col(2);
     k.sin_twist[j] = -z.y();
     k.cos_twist[j] = z.z();
-    // The first column of R_x(-twist) R is (cos offset, sin offset, 0).
-    k.offset[j] = std::atan2(k.cos_twist[j] * R(1, 0) + k.sin_twist[j] * R(2, 0), R(0, 0));
+    // The first column of R_x(-twist) R_JJ is (cos offset, sin offset, 0).
+    k.offset[j] = std::atan2(k.cos_twist[j] * R_JJ(1, 0) + k.sin_twist[j] * R_JJ(2, 0), R_JJ(0, 0));
     k.position[at(j)] = R_JL_[at(j)] * origin.position;
     k.slides[j] = joints_[at(j)].kind == JointKind::kPrismatic ? 1.0 : 0.0;
     k.turns[j] = 1.0 - k.slides[j];
@@ -129,7 +129,7 @@ ArmStatus Arm<N>::rebuild() noexcept {
 // Also counts bodies, beyond their capacity too, and lists those that fit.
 template <int N>
 void Arm<N>::sort_capsules() noexcept {
-  std::array<int, kMaxLinkCapsules> order;
+  std::array<int, kMaxLinkCapsules> order{};
   for (int i = 0; i < num_capsules_; ++i) {
     const auto key = [this](int c) {
       return sources_[at(c)].i_link * kMaxBodies + sources_[at(c)].i_body;

@@ -74,9 +74,9 @@ struct HullData {
   alignas(32) double x[kMaxHullVertices] = {};
   alignas(32) double y[kMaxHullVertices] = {};
   alignas(32) double z[kMaxHullVertices] = {};
-  Vec3 normal[kMaxHullPlanes];    // outward, unit
-  double offset[kMaxHullPlanes];  // the hull lies in normal . z <= offset
-  Vec3 edge[kMaxHullEdges];       // unit directions
+  Vec3 normal[kMaxHullPlanes];         // outward, unit
+  double offset[kMaxHullPlanes] = {};  // the hull lies in normal . z <= offset
+  Vec3 edge[kMaxHullEdges];            // unit directions
 };
 
 enum class CoreKind : std::int8_t { kPoint, kSegment, kBox, kCylinder, kHull };

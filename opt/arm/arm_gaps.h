@@ -27,9 +27,9 @@ struct ArmGaps {
   [[nodiscard]] static constexpr std::size_t pair(int i_link, int i_lower) noexcept {
     return static_cast<std::size_t>(i_link * (i_link - 1) / 2 + i_lower);
   }
-  std::array<double, N + 1> world_m;      // link to obstacles
-  std::array<double, N + 1> slack_m;      // likewise, above what the waypoint must keep
-  std::array<double, kNumPairs> links_m;  // link to link, by `pair`
+  std::array<double, N + 1> world_m{};      // link to obstacles
+  std::array<double, N + 1> slack_m{};      // likewise, above what the waypoint must keep
+  std::array<double, kNumPairs> links_m{};  // link to link, by `pair`
 
   // The better of two lower bounds.
   void raise_to(const ArmGaps& other) SOPT_RT {
@@ -46,8 +46,8 @@ struct ArmGaps {
 // How far links move at most, in the world and against each other.
 template <int N>
 struct ArmMove {
-  std::array<double, N + 1> world_m;
-  std::array<double, ArmGaps<N>::kNumPairs> links_m;
+  std::array<double, N + 1> world_m{};
+  std::array<double, ArmGaps<N>::kNumPairs> links_m{};
 };
 
 template <int N>
@@ -96,7 +96,7 @@ class ArmGapFinder {
   double min_clearance_m_ = 0.0;
   std::int64_t num_queries_ = 0;
   ArmPose<N> pose_;
-  ArmGaps<N> farthest_{};  // 0 where something may come near, else infinite
+  ArmGaps<N> farthest_;  // 0 where something may come near, else infinite
 };
 
 template <int N>

@@ -29,7 +29,8 @@ struct ShareLimits {
   [[nodiscard]] double reach(int num_steps) const noexcept {
     const double ramp = std::floor(rate / acceleration);  // waypoints below the rate
     if (num_steps - 1 <= 2.0 * ramp) {
-      return acceleration * ((num_steps / 2) * ((num_steps + 1) / 2));
+      const int middle = num_steps / 2;
+      return acceleration * (middle * (num_steps - middle));
     }
     return acceleration * ramp * (ramp + 1.0) + rate * (num_steps - 1 - 2.0 * ramp);
   }

@@ -190,9 +190,9 @@ Violation find_violation(const Arm<N>& arm, const Trajectory<Arm<N>>& trajectory
   return check.violation();
 }
 
-#define SOPT_INSTANTIATE(N)                                                   \
-  template Violation find_violation(const Arm<N>&, const Trajectory<Arm<N>>&, \
-                                    const VerifyProblem<Arm<N>>&, Certificate&) SOPT_RT
+#define SOPT_INSTANTIATE(N)                                                       \
+  template Violation find_violation(const Arm<(N)>&, const Trajectory<Arm<(N)>>&, \
+                                    const VerifyProblem<Arm<(N)>>&, Certificate&) SOPT_RT
 SOPT_INSTANTIATE(4);
 SOPT_INSTANTIATE(5);
 SOPT_INSTANTIATE(6);

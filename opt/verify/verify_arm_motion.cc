@@ -55,18 +55,18 @@ template <int N>
 void ArmMotion<N>::set_joints(const Arm<N>& arm) noexcept {
   for (int i = 0; i < N; ++i) {
     const ArmJoint& described = arm.joint(i);
-    const Mat3& R = described.origin.rotation;
+    const Mat3& R_PJ = described.origin.rotation;
     const Vec3 a = described.axis.normalized();
     Mat3 cross;
     cross << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
     const Mat3 outer = a * a.transpose();
     Joint& joint = joints_[at(i)];
     joint.turns = described.kind != JointKind::kPrismatic;
-    joint.in_plane = R * (Mat3::Identity() - outer);
-    joint.turned = R * cross;
-    joint.along = R * outer;
+    joint.in_plane = R_PJ * (Mat3::Identity() - outer);
+    joint.turned = R_PJ * cross;
+    joint.along = R_PJ * outer;
     joint.position = described.origin.position;
-    joint.slide = joint.turns ? Vec3(Vec3::Zero()) : Vec3(R * a);
+    joint.slide = joint.turns ? Vec3(Vec3::Zero()) : Vec3(R_PJ * a);
     joint.axis = a;
   }
 }

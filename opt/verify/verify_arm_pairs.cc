@@ -17,9 +17,9 @@ Vec3 seen_from(const Pose3& X, const Vec3& p) noexcept {
 }
 
 // Frame of link b in that of link a.
-Pose3 relative(const Pose3& X_Wa, const Pose3& X_Wb) noexcept {
-  const Mat3 R_aW = X_Wa.rotation.transpose();
-  return {R_aW * X_Wb.rotation, R_aW * (X_Wb.position - X_Wa.position)};
+Pose3 relative(const Pose3& X_WA, const Pose3& X_WB) noexcept {
+  const Mat3 R_AW = X_WA.rotation.transpose();
+  return {R_AW * X_WB.rotation, R_AW * (X_WB.position - X_WA.position)};
 }
 
 // What both kinds of pairs gather: the lowest of the bounds of their capsules.
@@ -85,9 +85,9 @@ double ArmPairs<N>::quick_bound_m(const ArmStretch<N>& stretch, const ArmPair& p
   const int base = pair.is_self() ? arm_.body(pair.i_other_body).i_link : 0;
   const double error_m =
       stretch.is_instant() ? 0.0 : motion_.chord_error_m(stretch.change, l, base);
-  const Pose3& X0 = stretch.from->X_WL[at(l)];
-  const Pose3& X1 = stretch.to->X_WL[at(l)];
-  Vec3 centers[] = {moved(X0, sphere.center), moved(X1, sphere.center)};
+  const Pose3& X_WL0 = stretch.from->X_WL[at(l)];
+  const Pose3& X_WL1 = stretch.to->X_WL[at(l)];
+  Vec3 centers[] = {moved(X_WL0, sphere.center), moved(X_WL1, sphere.center)};
   Aabb3 other = pair.obstacle_box;
   double radius_m = sphere.radius_m + error_m + kRounding_m;
   if (pair.is_self()) {
@@ -115,12 +115,12 @@ ClearanceBounds ArmPairs<N>::obstacle_bounds(const ArmStretch<N>& stretch, doubl
                                              ArmPair& pair) const noexcept {
   const int l = pair.i_link;
   const Convex3& obstacle = world_.obstacle(pair.i_obstacle);
-  const Pose3& X0 = stretch.from->X_WL[at(l)];
-  const Pose3& X1 = stretch.to->X_WL[at(l)];
+  const Pose3& X_WL0 = stretch.from->X_WL[at(l)];
+  const Pose3& X_WL1 = stretch.to->X_WL[at(l)];
   const double error_m = stretch.is_instant() ? 0.0 : motion_.chord_error_m(stretch.change, l, 0);
   Gathering gathering(stretch.is_instant(), enough_m);
   for (int i = arm_.first_capsule(l); i < arm_.first_capsule(l + 1); ++i) {
-    const Places found = places(stretch, X0, X1, i);
+    const Places found = places(stretch, X_WL0, X_WL1, i);
     const double grow_m = motion_.capsule_L(i).radius_m + error_m + kRounding_m;
     const double gap_m = box_gap_m(box_around(found.view()), pair.obstacle_box);
     if (gap_m > 0.0 && gathering.is_enough(gap_m - grow_m)) continue;
@@ -137,12 +137,12 @@ ClearanceBounds ArmPairs<N>::self_bounds(const ArmStretch<N>& stretch, double en
   const ArmBody& moving = arm_.body(pair.i_body);
   const int a = fixed.i_link;
   const int b = moving.i_link;
-  const Pose3 X0 = relative(stretch.from->X_WL[at(a)], stretch.from->X_WL[at(b)]);
-  const Pose3 X1 = relative(stretch.to->X_WL[at(a)], stretch.to->X_WL[at(b)]);
+  const Pose3 X_AB0 = relative(stretch.from->X_WL[at(a)], stretch.from->X_WL[at(b)]);
+  const Pose3 X_AB1 = relative(stretch.to->X_WL[at(a)], stretch.to->X_WL[at(b)]);
   const double error_m = stretch.is_instant() ? 0.0 : motion_.chord_error_m(stretch.change, b, a);
   Gathering gathering(stretch.is_instant(), enough_m);
   for (int i = moving.first; i < moving.last; ++i) {
-    const Places found = places(stretch, X0, X1, i);
+    const Places found = places(stretch, X_AB0, X_AB1, i);
     const Aabb3 box = box_around(found.view());
     for (int k = fixed.first; k < fixed.last; ++k) {
       const Capsule3& c = motion_.capsule_L(k);
