@@ -159,9 +159,9 @@ BENCHMARK(arm_exact);
 // Eight configurations that have nothing to do with each other, links' spheres first, then strict
 // covers; obstacles only.
 template <int N>
-unsigned lanes_near(const ArmScene<N>& scene, const LaneConfig<N>& q, float pad_m) {
+unsigned lanes_near(const ArmScene<N>& scene, const LaneConfig<N>& q, float pad_m,
+                    LanePose<N>& pose) {
   const ClearanceRule rule = rule_of(scene.options);
-  LanePose<N> pose;
   forward_lanes(scene.arm, q, pose);
   unsigned near = 0;
   const auto may_be_near = [&](int l, const CoverSphere& s) {
@@ -187,11 +187,12 @@ void arm_lanes(benchmark::State& state) {
   if (!bench.is_present(state)) return;
   constexpr double kReach_m = 4.0;  // more than any point's of the arm
   const auto pad_m = static_cast<float>(lane_pad_m(bench.scene(0).arm, kReach_m, 0.0));
+  LaneConfig<ArmBench::kDof> q{};
+  LanePose<ArmBench::kDof> pose{};  // set by every call
   std::size_t i = 0;
   std::int64_t num_clear = 0;
   for (auto _ : state) {
     const std::size_t first = i * kLanesFloat;
-    LaneConfig<ArmBench::kDof> q;
     for (int j = 0; j < ArmBench::kDof; ++j) {
       LaneJoint& joint = q.joint[static_cast<std::size_t>(j)];
       for (std::size_t k = 0; k < kLanesDouble; ++k) {
@@ -199,7 +200,7 @@ void arm_lanes(benchmark::State& state) {
         joint.high[k] = bench.config(first + kLanesDouble + k)[j];
       }
     }
-    const unsigned near = lanes_near(bench.scene(i++), q, pad_m);
+    const unsigned near = lanes_near(bench.scene(i++), q, pad_m, pose);
     num_clear += kLanesFloat - __builtin_popcount(near);
   }
   count_configurations(state, kLanesFloat, num_clear);
