@@ -2,14 +2,15 @@
 // robot. Fields: robot (a preset's name, or any name with robot_file), robot_file (relative to the
 // scene file), joints (the free ones in the order of start and goal), locked_joints {name: value},
 // base {position, quaternion_xyzw}, at most kMaxBase_m from the origin, start, goal, obstacles,
-// speed (rad/s), dt, margin, min_clearance, start_velocity and goal_velocity (zeros), limits
-// {lower, upper, v_max, a_max}: arrays in the order of start, null where the robot's own limit
-// holds; they may narrow what the robot allows, and give accelerations freely, which few robots
-// publish; joint_weights, likewise, of the path metric (ArmJoint::weight). Obstacles: box {size},
-// cylinder {radius, height along local z}, sphere {radius}, all with position and quaternion_xyzw
-// (absent: not turned); capsule {p0, p1, radius}; hull {vertices}, the convex hull of 4 to 32
-// points. A start or goal outside the limits by at most kLimitSlack is moved onto them: published
-// files round. Further outside is an error of the file; a collision is the planner's to answer.
+// speed (rad/s, of the weighted joints), dt, margin, min_clearance, start_velocity and
+// goal_velocity (zeros), limits {lower, upper, v_max, a_max}: arrays in the order of start, null
+// where the robot's own limit holds; they may narrow what the robot allows, and give accelerations
+// freely, which few robots publish; joint_weights, likewise, of the path metric (ArmJoint::weight).
+// Obstacles: box {size}, cylinder {radius, height along local z}, sphere {radius}, all with
+// position and quaternion_xyzw (absent: not turned); capsule {p0, p1, radius}; hull {vertices}, the
+// convex hull of 4 to 32 points. A start or goal outside the limits by at most kLimitSlack is moved
+// onto them: published files round. Further outside is an error of the file; a collision is the
+// planner's to answer.
 #pragma once
 
 #include <variant>
